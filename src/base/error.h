@@ -1,0 +1,40 @@
+// Errors in what the user gave us: what is wrong, where, what was expected, what to do.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace etendue {
+
+/// A text file as read, kept while a message may have to point into it.
+struct SourceFile {
+  std::string path;
+  std::string text;
+};
+
+/// A place in a file. Without a source (or for binary files) only the path is known.
+struct Location {
+  std::shared_ptr<const SourceFile> source;
+  std::size_t offset = 0;  ///< Byte offset into source->text.
+  std::size_t length = 1;  ///< Bytes to underline.
+};
+
+/// `file:line:col: problem`, the line with a caret, and the hint on a line of its own.
+std::string format_message(const Location& where, std::string_view problem, std::string_view hint = {});
+
+/// Thrown for any bad input or usage; what() is the complete message for a person.
+class InputError : public std::runtime_error {
+ public:
+  explicit InputError(const std::string& complete_message) : std::runtime_error(complete_message) {}
+  InputError(const Location& where, std::string_view problem, std::string_view hint = {})
+      : std::runtime_error(format_message(where, problem, hint)) {}
+};
+
+/// "known: a, b, c", nearest to `wrong` first (edit distance); at most `most` names.
+std::string known_names(std::string_view wrong, std::vector<std::string> known, std::size_t most = 8);
+
+}  // namespace etendue

@@ -1,0 +1,24 @@
+// A triangle mesh as it lies in memory: positions, optional vertex normals and uvs, indices.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/transform.h"
+#include "base/vec.h"
+
+namespace etendue {
+
+/// Triangles in world space (m). One index addresses position, normal and uv alike.
+struct Mesh {
+  std::string name;  ///< For messages: the file's path, or what generated it.
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;  ///< Unit, one per position, or empty.
+  std::vector<Vec2f> uvs;      ///< One per position, or empty.
+  std::vector<std::uint32_t> indices;  ///< Three per triangle.
+
+  std::size_t triangle_count() const { return indices.size() / 3; }
+};
+
+}  // namespace etendue

@@ -1,0 +1,53 @@
+// Scene -> Film: the tile loop, its settings, its progress, what it counted.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "render/isa.h"
+#include "scene/scene.h"
+
+namespace etendue {
+
+/// How to render; what is not given comes from the scene file.
+struct RenderSettings {
+  int samples_per_pixel = 16;  ///< In all, over all replicates.
+  int replicates = 4;          ///< Must divide samples_per_pixel.
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0: all that the process may use.
+  Isa isa = Isa::scalar;
+  bool is_reordering = true;  ///< Aim shadow packets; off only to show that it changes nothing.
+};
+
+/// A sample whose radiance was NaN, infinite or negative; it counts as zero in its pixel.
+struct InvalidSample {
+  int x, y;
+  std::int64_t replicate, index;
+  Colorf radiance;
+};
+
+struct RenderCounts {
+  std::int64_t samples = 0, camera_rays = 0, shadow_rays = 0, bsdf_rays = 0, invalid_samples = 0;
+};
+
+struct RenderResult {
+  Film film;
+  RenderCounts counts;
+  std::vector<InvalidSample> invalid;  ///< The first few, in pixel order.
+  double seconds = 0;
+  bool is_interrupted = false;  ///< `stop` was set: pixels with count 0 were not rendered.
+};
+
+/// Called from one thread at a time with the fraction done in [0, 1], a few times a second.
+using ProgressCallback = std::function<void(double fraction)>;
+
+/// Throws InputError where the settings do not fit the scene.
+RenderResult render(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress = {},
+                    const std::atomic<bool>* stop = nullptr);
+
+}  // namespace etendue

@@ -1,0 +1,70 @@
+// What a plugin accepts, stated once: it drives reading, checking, `etendue info` and the documentation test.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenefile/scene_desc.h"
+
+namespace etendue {
+
+/// One parameter of a plugin.
+struct Parameter {
+  enum class Type { boolean, integer, real, text, color, point, vector, transform };
+  std::string name;
+  Type type;
+  std::string default_value;  ///< As text, parsed like the file's; empty: the parameter has no default.
+  std::string unit;           ///< "m", "deg", "W/(m^2 sr)", "" for pure numbers.
+  std::string meaning;
+  bool is_required = false;
+};
+
+/// A plugin of one family, as the scene file and `etendue info` name it.
+struct Plugin {
+  std::string family;  ///< integrator, sampler, camera, filter, shape, bsdf, light.
+  std::string name;
+  std::string meaning;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> child_families;  ///< Tags that may stand inside, e.g. bsdf and light in a mesh.
+};
+
+/// A key that the file states and the plugin does not know; the caller logs it, or throws where strict.
+struct UnreadKey {
+  std::string message;  ///< Complete, with place and nearest known names.
+};
+
+/// The values of one object, checked against its plugin: types right, required ones present, defaults filled.
+class Parameters {
+ public:
+  /// Throws InputError for a wrong type, a missing required parameter or one stated twice. Keys that the plugin
+  /// does not know are appended to `unread`.
+  Parameters(const Object& object, const Plugin& plugin, std::vector<UnreadKey>& unread);
+
+  bool is_stated(std::string_view name) const;  ///< The file has it (no default was used).
+  bool has(std::string_view name) const;        ///< Stated or with a default.
+  bool boolean(std::string_view name) const;
+  int integer(std::string_view name) const;
+  double real(std::string_view name) const;  ///< Integers are accepted.
+  std::string text(std::string_view name) const;
+  Colorf color(std::string_view name) const;
+  Vec3<double> point(std::string_view name) const;
+  Vec3<double> vector(std::string_view name) const;
+  Transform transform(std::string_view name) const;
+
+  /// Where the value stands; where it was defaulted, where the object stands.
+  Location location(std::string_view name) const;
+  const Object& object() const { return *object_; }
+
+ private:
+  const Property::Value& value(std::string_view name) const;
+  struct Entry {
+    const Parameter* parameter;
+    Property::Value value;
+    const Property* stated;
+  };
+  const Object* object_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace etendue
