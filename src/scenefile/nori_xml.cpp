@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fmt/format.h>
 #include <pugixml.hpp>
-#include <span>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace etendue {
 namespace {
@@ -87,6 +87,7 @@ class Reader {
  private:
   Location at(std::size_t offset, std::size_t length = 1) const { return {source_, offset, length}; }
   Location place_of(const pugi::xml_node& node) const;
+  std::optional<Location> innermost_open(std::size_t limit) const;
   pugi::xml_node load_root();
   Element read_element(const pugi::xml_node& node) const;
   std::vector<pugi::xml_node> child_elements(const Element& element) const;
@@ -112,6 +113,37 @@ Location Reader::place_of(const pugi::xml_node& node) const {
   return at(offset, std::max<std::size_t>(std::min(end, text.size()) - offset, 1));
 }
 
+/// The tag of the element that is open at the offset `limit`, up to which the text is well-formed.
+std::optional<Location> Reader::innermost_open(std::size_t limit) const {
+  const std::string_view text = source_->text;
+  std::vector<Location> open;
+  const auto behind = [&](std::string_view end, std::size_t from) {
+    const std::size_t found = text.find(end, from);
+    return found == std::string_view::npos ? limit : found + end.size();
+  };
+  for (std::size_t offset = text.find('<'); offset < limit; offset = text.find('<', offset)) {
+    const std::string_view rest = text.substr(offset);
+    if (rest.starts_with("<!--")) {
+      offset = behind("-->", offset);
+    } else if (rest.starts_with("<![CDATA[")) {
+      offset = behind("]]>", offset);
+    } else if (rest.starts_with("<?")) {
+      offset = behind("?>", offset);
+    } else if (rest.starts_with("</")) {
+      offset = behind(">", offset);
+      if (offset <= limit && !open.empty()) open.pop_back();
+    } else {
+      const std::size_t name = offset + 1;
+      open.push_back(at(name, std::min(text.find_first_of(" \t\r\n/>", name), text.size()) - name));
+      for (offset = name; offset < limit && text[offset] != '>'; ++offset)
+        if (text[offset] == '"' || text[offset] == '\'')
+          offset = behind(text.substr(offset, 1), offset + 1) - 1;
+      if (offset < limit && text[offset - 1] == '/') open.pop_back();
+    }
+  }
+  return open.empty() ? std::nullopt : std::optional(open.back());
+}
+
 pugi::xml_node Reader::load_root() {
   // parse_fragment keeps text and elements beside the root, which would otherwise vanish without a word.
   constexpr unsigned int options = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_wconv_attribute |
@@ -126,8 +158,11 @@ pugi::xml_node Reader::load_root() {
   if (!result) {
     const Location where = at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)));
     if (result.status == pugi::status_bad_doctype) throw InputError(where, doctype_problem);
-    if (result.status == pugi::status_end_element_mismatch && where.offset >= source_->text.size())
-      throw InputError(where, "the file ends inside an element: an end tag is missing");
+    if (result.status == pugi::status_end_element_mismatch)
+      if (const std::optional<Location> open = innermost_open(where.offset))
+        throw InputError(where, fmt::format("expected </{}>, the end of the element of line {}",
+                                            source_->text.substr(open->offset, open->length),
+                                            line_and_column(*open).line));
     throw InputError(where, fmt::format("not well-formed XML: {}", result.description()));
   }
   pugi::xml_node root;
@@ -153,6 +188,7 @@ Element Reader::read_element(const pugi::xml_node& node) const {
     if (!is_as_parsed)
       throw InputError(element.location, fmt::format("malformed start tag <{}>", element.tag));
   };
+  std::unordered_set<std::string_view> seen;
   for (const pugi::xml_attribute& parsed : node.attributes()) {
     const std::string_view name = parsed.name();
     skip_white_space();
@@ -307,15 +343,16 @@ Object Reader::read_object(const Element& element, int level) {
       throw InputError(object.type_location, fmt::format("the type of <{}> is empty", element.tag));
   }
 
+  std::unordered_map<std::string, Location> stated;
   for (const pugi::xml_node& node : child_elements(element)) {
     const Element child = read_element(node);
     if (contains(property_tags, child.tag)) {
       Property property = read_property(child);
-      for (const Property& other : object.properties)
-        if (other.name == property.name)
-          throw InputError(property.name_location,
-                           fmt::format("'{}' is stated twice in this <{}>, first in line {}", property.name,
-                                       element.tag, line_and_column(other.name_location).line));
+      const auto [first, is_new] = stated.emplace(property.name, property.name_location);
+      if (!is_new)
+        throw InputError(property.name_location,
+                         fmt::format("'{}' is stated twice in this <{}>, first in line {}", property.name,
+                                     element.tag, line_and_column(first->second).line));
       object.properties.push_back(std::move(property));
     } else if (child.find("type") || contains(object_tags, child.tag)) {
       object.children.push_back(read_object(child, level + 1));
