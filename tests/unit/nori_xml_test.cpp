@@ -301,7 +301,8 @@ TEST_F(NoriXml, RefusesBrokenEncodings) {
 }
 
 TEST_F(NoriXml, TellsTheDialectAndWhy) {
-  const std::string light = "<mesh type='obj'><luminaire type='area'/></mesh>";
+  const std::string light =
+      "<mesh type='obj'><luminaire type='area'/><bsdf type='diffuse'/></mesh><camera type='a'/>";
   EXPECT_EQ(read("<scene>" + light + "</scene>").dialect, Dialect::nori_2012);
   EXPECT_THAT(read("<scene>" + light + "</scene>").dialect_reason, HasSubstr("<luminaire>"));
   EXPECT_EQ(read("<scene><emitter type='point'/></scene>").dialect, Dialect::nori);

@@ -68,7 +68,7 @@ TEST(Transform, IsInvertibleWhateverTheUnit) {
     const V n = transform_normal(scaling({unit, unit, unit}), {0, 1, 0});
     EXPECT_DOUBLE_EQ(n.y * unit, 1) << unit;
   }
-  const Transform flat = scaling({1e-12, 1, 1}), turned = rotation({1, 2, 3}, 40);
+  const Transform flat = scaling({1e-17, 1, 1}), turned = rotation({1, 2, 3}, 40);
   EXPECT_TRUE(is_invertible(flat * turned));
   EXPECT_TRUE(is_invertible(turned * flat));
 }
