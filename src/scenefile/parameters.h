@@ -67,6 +67,9 @@ class Parameters {
   std::vector<Entry> entries_;
 };
 
+/// A colour parameter whose channels must be finite and >= 0 (reflectance, radiance); else throws InputError.
+Colorf nonnegative_color(const Parameters& parameters, std::string_view name);
+
 /// The error for an object whose type none of `known` has: its place, the known names nearest first.
 InputError unknown_plugin(const Object& object, const std::vector<Plugin>& known);
 /// The same for a name that comes from the command line.
