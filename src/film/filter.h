@@ -40,7 +40,7 @@ class PixelFilter {
   /// `cumulative(x)` is proportional to the integral of the filter from -radius to x.
   template <class Cumulative>
   PixelFilter(double radius_px, const Cumulative& cumulative);
-  std::vector<float> offset_px_;  ///< intervals + 1 quantiles, and one for the last gather.
+  std::vector<float> offset_px_;  ///< intervals + 1 quantiles.
 };
 
 /// Throws InputError for an unknown filter (with the known ones) or a parameter out of range.

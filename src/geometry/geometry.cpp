@@ -17,6 +17,7 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
   first_triangle.push_back(std::int32_t(indices.size() / 3));
   has_normals.push_back(mesh.normals.empty() ? 0 : 1);
   triangles.push_back(std::int32_t(mesh.triangle_count()));
+  sphere.push_back(-1);
   has_any_normals = has_any_normals || !mesh.normals.empty();
   positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
   if (mesh.normals.empty())
@@ -32,13 +33,14 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
   return count() - 1;
 }
 
-std::int32_t Geometry::add_sphere(const Sphere& sphere, SurfaceIds ids) {
+std::int32_t Geometry::add_sphere(const Sphere& added, SurfaceIds ids) {
   material.push_back(ids.material);
   light.push_back(ids.light);
   first_triangle.push_back(0);
   has_normals.push_back(0);
   triangles.push_back(0);
-  spheres.push_back(sphere);
+  sphere.push_back(std::int32_t(spheres.size()));
+  spheres.push_back(added);
   return count() - 1;
 }
 

@@ -22,15 +22,14 @@ struct SurfaceIds {
 };
 
 /// Every mesh's vertices and triangles one behind the other, so that a packet whose lanes hit different meshes still
-/// gathers from one array. A geometry is one mesh or one sphere; meshes come first.
+/// gathers from one array. A geometry is one mesh or one sphere.
 class Geometry {
  public:
-  /// Returns the geometry's id. Meshes must all be added before spheres.
+  /// Both return the geometry's id.
   std::int32_t add_mesh(const Mesh& mesh, SurfaceIds ids);
-  std::int32_t add_sphere(const Sphere& sphere, SurfaceIds ids);
+  std::int32_t add_sphere(const Sphere& added, SurfaceIds ids);
 
   std::int32_t count() const { return std::int32_t(material.size()); }
-  std::int32_t mesh_count() const { return std::int32_t(count() - spheres.size()); }
   std::size_t triangle_count() const { return indices.size() / 3; }
 
   // Per geometry.
@@ -38,6 +37,7 @@ class Geometry {
   std::vector<std::int32_t> first_triangle;  ///< Into `indices`, in triangles; 0 for spheres.
   std::vector<std::int32_t> has_normals;     ///< 1 where the mesh has vertex normals.
   std::vector<std::int32_t> triangles;       ///< Number of them; 0 for spheres.
+  std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 for meshes.
   // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none.
   std::vector<Vec3f> positions, normals;
   std::vector<Vec2f> uvs;

@@ -264,7 +264,7 @@ RayCaster::RayCaster(const Geometry& geometry, int threads) : embree_(std::make_
   embree_->scene = rtcNewScene(embree_->device);
   for (std::int32_t id = 0; id < geometry.count(); ++id) {
     RTCGeometry shape;
-    if (id < geometry.mesh_count()) {
+    if (geometry.sphere[id] < 0) {
       shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
       rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions.data(), 0,
                                  sizeof(Vec3f), geometry.positions.size());
@@ -274,7 +274,7 @@ RayCaster::RayCaster(const Geometry& geometry, int threads) : embree_(std::make_
     } else {
       shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_USER);
       rtcSetGeometryUserPrimitiveCount(shape, 1);
-      rtcSetGeometryUserData(shape, const_cast<Sphere*>(&geometry.spheres[id - geometry.mesh_count()]));
+      rtcSetGeometryUserData(shape, const_cast<Sphere*>(&geometry.spheres[geometry.sphere[id]]));
       rtcSetGeometryBoundsFunction(shape, sphere_bounds, nullptr);
       rtcSetGeometryIntersectFunction(shape, sphere_intersect);
       rtcSetGeometryOccludedFunction(shape, sphere_occluded);

@@ -21,7 +21,7 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
     areas.push_back(0.5 * length(cross(wide(edge_1), wide(edge_2))));
     total_area += areas.back();
   }
-  const AliasTable table(areas);
+  const AliasTable table = make_alias_table(areas);
   alias_threshold_.insert(alias_threshold_.end(), table.threshold.begin(), table.threshold.end());
   alias_.insert(alias_.end(), table.alias.begin(), table.alias.end());
   pdf_area_.push_back(float(1 / total_area));
