@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "film/film.h"
+#include "integrator/integrator.h"
 #include "render/isa.h"
 #include "scene/scene.h"
 
@@ -16,10 +17,11 @@ namespace etendue {
 
 /// How to render; what is not given comes from the scene file.
 struct RenderSettings {
+  IntegratorSettings integrator;
   int samples_per_pixel = 16;  ///< In all, over all replicates.
   int replicates = 4;          ///< Must divide samples_per_pixel.
   std::uint64_t seed = 0;
-  int threads = 0;  ///< 0: all that the process may use.
+  int threads = 0;             ///< 0: all that the process may use.
   Isa isa = Isa::scalar;
   bool is_reordering = true;  ///< Aim shadow packets; off only to show that it changes nothing.
 };

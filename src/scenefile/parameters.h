@@ -69,4 +69,12 @@ class Parameters {
   std::vector<Entry> entries_;
 };
 
+/// A colour parameter whose channels must be finite and >= 0 (reflectance, radiance); else throws InputError.
+Colorf nonnegative_color(const Parameters& parameters, std::string_view name);
+
+/// The error for an object whose type none of `known` has: its place, the known names nearest first.
+InputError unknown_plugin(const Object& object, const std::vector<Plugin>& known);
+/// The same for a name that comes from the command line.
+InputError unknown_plugin(std::string_view family, std::string_view name, const std::vector<Plugin>& known);
+
 }  // namespace etendue
