@@ -129,9 +129,10 @@ Property::Value convert(const Property& property, const Parameter& parameter, co
                    element_to_write(parameter));
 }
 
-std::vector<std::string> names_of(const Plugin& plugin) {
+template <class T>
+std::vector<std::string> names_of(const std::vector<T>& named) {
   std::vector<std::string> names;
-  for (const Parameter& parameter : plugin.parameters) names.push_back(parameter.name);
+  for (const T& item : named) names.push_back(item.name);
   return names;
 }
 
@@ -146,7 +147,7 @@ Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<U
     if (parameter == plugin.parameters.end()) {
       unread.push_back({format_message(property.name_location,
                                        fmt::format("unknown key '{}' of {}", property.name, label(object)),
-                                       known_names(property.name, names_of(plugin)))});
+                                       known_names(property.name, names_of(plugin.parameters)))});
       continue;
     }
     if (is_stated(property.name))
@@ -188,6 +189,25 @@ Transform Parameters::transform(std::string_view name) const { return std::get<T
 
 Location Parameters::location(std::string_view name) const {
   return is_stated(name) ? find(name)->stated->value_location : object_->location;
+}
+
+Colorf nonnegative_color(const Parameters& parameters, std::string_view name) {
+  const Colorf color = parameters.color(name);
+  for (const float channel : {color.r, color.g, color.b})
+    if (!(channel >= 0 && std::isfinite(channel)))
+      throw InputError(parameters.location(name),
+                       fmt::format("'{}' of {} has a channel of {}; it must be finite and not negative", name,
+                                   label(parameters.object()), channel));
+  return color;
+}
+
+InputError unknown_plugin(const Object& object, const std::vector<Plugin>& known) {
+  return {object.type_location, fmt::format("unknown {} '{}'", object.family, object.type),
+          known_names(object.type, names_of(known))};
+}
+
+InputError unknown_plugin(std::string_view family, std::string_view name, const std::vector<Plugin>& known) {
+  return {Location{}, fmt::format("unknown {} '{}'", family, name), known_names(name, names_of(known))};
 }
 
 }  // namespace etendue

@@ -135,5 +135,24 @@ TEST_F(ParametersTest, AWrongDefaultIsAFaultOfTheProgram) {
   EXPECT_THROW(error({}, wrong), std::logic_error);
 }
 
+TEST_F(ParametersTest, RefusesNegativeOrInfiniteColours) {
+  const auto checked = [&](const Colorf& color) {
+    const Object stated = object({property("kd", "color", color)});
+    return nonnegative_color(Parameters(stated, plugin, unread_), "kd");
+  };
+  EXPECT_EQ(checked({0, 2, 1}), (Colorf{0, 2, 1}));
+  EXPECT_THROW(checked({0, -1e-6f, 1}), InputError);
+  EXPECT_THROW(checked({0, 0, HUGE_VALF}), InputError);
+  EXPECT_THROW(checked({std::nanf(""), 0, 0}), InputError);
+}
+
+TEST_F(ParametersTest, NamesThePluginsNearestToAnUnknownOne) {
+  Object wrong = object({});
+  wrong.type = "phnog";
+  EXPECT_STREQ(unknown_plugin(wrong, {plugin}).what(),
+               "s.xml:1:1: unknown bsdf 'phnog'\n  1 | bsdf\n    | ^~~~\ndid you mean 'phong'? known: phong");
+  EXPECT_STREQ(unknown_plugin("integrator", "x", {}).what(), "unknown integrator 'x'\nknown: none");
+}
+
 }  // namespace
 }  // namespace etendue
