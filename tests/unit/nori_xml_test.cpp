@@ -28,6 +28,7 @@ class NoriXml : public testing::Test {
 
   fs::path write(const std::string& text) const {
     const fs::path file = directory_ / "s.xml";
+    fs::remove(file);  // Some file systems wait for the disk where a file is written over.
     std::ofstream(file, std::ios::binary) << text;
     return file;
   }
