@@ -14,7 +14,7 @@ struct LightChoice {
 
 template <class F>
 LightChoice<F> choose_light_uniformly(std::int32_t light_count, const UInt<F>& u_light) {
-  const UInt<F> n{std::uint32_t(light_count)};
+  const UInt<F> n = UInt<F>(std::uint32_t(light_count));
   return {as_int(mul_hi(u_light, n)), u_light * n, F(1.0f / float(light_count))};
 }
 

@@ -40,6 +40,8 @@ bool is_before(const InvalidSample& a, const InvalidSample& b) {
 
 }  // namespace
 
+int available_threads() { return tbb::this_task_arena::max_concurrency(); }
+
 RenderResult render(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress,
                     const std::atomic<bool>* stop) {
   check(settings);

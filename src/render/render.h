@@ -48,6 +48,9 @@ struct RenderResult {
 /// Called from one thread at a time with the fraction done in [0, 1], a few times a second.
 using ProgressCallback = std::function<void(double fraction)>;
 
+/// Threads that a render takes where none are asked for: those that this process may run on.
+int available_threads();
+
 /// Throws InputError where the settings do not fit the scene.
 RenderResult render(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress = {},
                     const std::atomic<bool>* stop = nullptr);

@@ -130,11 +130,15 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     if (radiance) lights.add(*radiance, label(object, numbered), LightKind::sphere, lights.spheres.add(sphere));
   } else if (object.type == rectangle_plugin.name) {
     const Parameters parameters(object, rectangle_plugin, unread);
-    const Mesh mesh = make_rectangle(world_from_object(parameters));
+    const Transform transform = world_from_object(parameters);
+    const Mesh mesh = make_rectangle(transform);
     geometry.add_mesh(mesh, ids);
     if (radiance) {
-      const auto corner = [&](int k) { return mesh.positions[std::size_t(k)]; };
-      const std::int32_t row = lights.rectangles.add(corner(0), corner(1) - corner(0), corner(3) - corner(0));
+      const Vec3f &corner = mesh.positions[0], along_x = mesh.positions[1] - corner, along_y = mesh.positions[3] - corner;
+      // The front stays in front under a mirroring transform, as for the mesh.
+      const bool is_mirrored = determinant(transform) < 0;
+      const std::int32_t row =
+          lights.rectangles.add(corner, is_mirrored ? along_y : along_x, is_mirrored ? along_x : along_y);
       lights.add(*radiance, label(object, numbered), LightKind::rectangle, row);
     }
   } else {
