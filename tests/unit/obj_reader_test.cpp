@@ -162,8 +162,7 @@ TEST(ObjReader, line_ends_blanks_comments_and_continuations) {
       "# v 7 7 7\nv 0 0 0 # first\nv 1 0 0 #\nv 1 1 0\n#\nf 1 2 3 # 4\n#",
       "v 0 0 \\\n0\nv 1 \\\r\n 0 0\nv 1 1 0\\\n\nf 1 \\\n \\\n2 3\\\n",
       "# path C:\\dir\\\nv 0 0 0\nusemtl C:\\dir\\\nv 1 0 0\nv 1 1 0\nf 1 2 3\n",
-      "mtllib a.mtl\no name\nv 0 0 0\ng vgroup f\nvp 1 2\nv 1 0 0\ns off\nv 1 1 0\nusemtl f\nf 1 2 3\nl 1 "
-      "2\np 1\n",
+      "mtllib a.mtl\no name\nv 0 0 0\ng vgroup f\nvp 1 2\nv 1 0 0\ns off\nv 1 1 0\nusemtl f\nf 1 2 3\nl 1",
   };
   for (const char* text : same) {
     const auto mesh = read_text(text);
