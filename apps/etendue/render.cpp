@@ -189,7 +189,7 @@ int run(const Options& options) {
                     {"samplesPerPixel", std::to_string(settings.samples_per_pixel)},
                     {"integrator", std::string(integrator_name(settings.integrator.kind))},
                     {"sampler", std::string(sampler_name(loaded.scene.sampler))},
-                    {"version", ETENDUE_VERSION}};
+                    {"software", "Etendue " ETENDUE_VERSION}};
   for (const std::filesystem::path output : options.outputs)
     output.extension() == ".png" ? write_png(output, image) : write_exr(output, image);
   if (!options.stats_file.empty())

@@ -70,5 +70,5 @@ constexpr Kernel kernel{lane_count_v<F>, render_tile};
 
 }  // namespace etendue
 
-extern "C" const etendue::Kernel* etendue_kernel();
+extern "C" __attribute__((visibility("default"))) const etendue::Kernel* etendue_kernel();
 const etendue::Kernel* etendue_kernel() { return &etendue::kernel; }
