@@ -60,7 +60,8 @@ class ExrFile : public testing::Test {
 };
 
 Image small_image() {
-  constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+  constexpr float infinity = std::numeric_limits<float>::infinity(),
+                  nan = std::numeric_limits<float>::quiet_NaN();
   return {3,
           2,
           {{"R", {0, 1, 2, 3, 4, 5}},

@@ -60,7 +60,8 @@ TEST_F(PngFile, KeepsRowsAndChannelsInPlace) {
 }
 
 TEST_F(PngFile, ShowsNaNAsMagentaAndClipsTheRest) {
-  constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+  constexpr float infinity = std::numeric_limits<float>::infinity(),
+                  nan = std::numeric_limits<float>::quiet_NaN();
   write_png(file,
             {4, 1, {{"R", {0, -1, infinity, 2}}, {"G", {nan, 0, 0, -infinity}}, {"B", {1, 0, 0, 0}}}, {}});
   EXPECT_EQ(bytes_of_file(), (std::vector<int>{255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 0, 0}));
