@@ -22,6 +22,12 @@ xsimd::batch<float, A> max(const xsimd::batch<float, A>& a, const xsimd::batch<f
   return xsimd::max(a, b);
 }
 
+inline std::int32_t min_int(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
+template <class A>
+xsimd::batch<std::int32_t, A> min_int(const xsimd::batch<std::int32_t, A>& a, const xsimd::batch<std::int32_t, A>& b) {
+  return xsimd::min(a, b);
+}
+
 inline float exp(float x) { return std::exp(x); }
 inline float log(float x) { return std::log(x); }
 template <class A>
