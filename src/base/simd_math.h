@@ -39,8 +39,8 @@ xsimd::batch<float, A> log(const xsimd::batch<float, A>& x) {
   return xsimd::log(x);
 }
 
-/// x^y for x >= 0; 0^y = 0 for y > 0.
-inline float pow_positive(float x, float y) { return std::pow(x, y); }
+/// x^y for x >= 0; 0^y = 0, for y = 0 too: a lobe cos^0 ends where the cosine does.
+inline float pow_positive(float x, float y) { return x > 0 ? std::pow(x, y) : 0; }
 template <class A>
 xsimd::batch<float, A> pow_positive(const xsimd::batch<float, A>& x, const xsimd::batch<float, A>& y) {
   using F = xsimd::batch<float, A>;

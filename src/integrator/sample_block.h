@@ -83,6 +83,7 @@ struct SampleBlock {
 
   // The surface that the camera sees: what light and BSDF samples start from; material -1: none.
   Vec3Column position, ng, ns, wo;
+  Column<float> clearance;  ///< How far off the surface rays that leave it start (m).
   Column<std::int32_t> material;
 
   // A BSDF sample: what its ray brings is weighted by `throughput`.
