@@ -218,9 +218,11 @@ TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsNamed) {
 TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   // Over the light's density, the radiance exceeds the largest float.
   write_file(path("scene.xml"), scene_xml(4, 4, "3e38"));
-  const std::vector<std::string> command{"render", "scene.xml",    "-o",      "a.exr",  "--spp",
-                                         "2",      "--replicates", "2",       "--seed", "7",
-                                         "--isa",  "scalar",       "--stats", "s.json"};
+  const std::vector<std::string> sampling{"--integrator", "mis", "--spp",  "8",
+                                          "--replicates", "2",   "--seed", "7"};
+  std::vector<std::string> command{"render", "scene.xml", "-o",      "a.exr",
+                                   "--isa",  "scalar",    "--stats", "s.json"};
+  command.insert(command.end(), sampling.begin(), sampling.end());
   const ProgramResult result = run(command);
   ASSERT_EQ(result.exit_code, 0);
   EXPECT_GT(json("s.json").at("invalid_samples"), 0);
@@ -230,8 +232,9 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   const std::size_t at = result.err.find(start);
   ASSERT_NE(at, std::string::npos) << result.err;
   const std::string id = result.err.substr(at + start.size(), result.err.find('\n', at) - at - start.size());
-  const ProgramResult replayed = run({"render", "scene.xml", "--integrator", "mis", "--spp", "8",
-                                      "--replicates", "2", "--seed", "7", "--replay", id});
+  command = {"render", "scene.xml", "--replay", id};
+  command.insert(command.end(), sampling.begin(), sampling.end());
+  const ProgramResult replayed = run(command);
   EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
   EXPECT_THAT(replayed.out, AllOf(HasSubstr("camera ray"), HasSubstr("light sample      light 'lamp'"),
                                   HasSubstr("radiance          inf")));
