@@ -205,7 +205,7 @@ def mesh_xml(file, inside, moves=()):
 
 
 def diffuse(color):
-    return f'<bsdf type="diffuse">\n\t<color name="reflectance" value="{numbers(color)}"/>\n</bsdf>'
+    return f'<bsdf type="diffuse">\n\t<color name="albedo" value="{numbers(color)}"/>\n</bsdf>'
 
 
 def phong(kd, ks, n):
@@ -237,17 +237,17 @@ def scene_xml(comment, samples, camera, body):
 # --- the still life --------------------------------------------------------------------------------------------------
 
 def cloth():
-    """A napkin of 2.6 x 2.0 with folds that run across it; it lies on the table with a hem of 0.03."""
+    """A napkin of 2.6 x 2.0 with folds that run across it; it lies on the table with its rim just above it."""
     rows, columns = 57, 73
     points = []
     for i in range(rows):
         v = i / (rows - 1)
         for j in range(columns):
             u = j / (columns - 1)
-            rim = min(1.0, 7 * min(u, 1 - u, v, 1 - v))
+            rim = min(1.0, 7 * min(u, 1 - u, 1 - v, 0.05 + v))
             fold = 0.5 + 0.5 * math.sin(2 * math.pi * (2.6 * u + 0.55 * v + 0.13 * math.sin(5 * v + 1)))
             ripple = 0.5 + 0.5 * math.sin(9 * u - 7 * v + 2 * math.sin(4 * u))
-            y = 0.03 + rim * (0.24 * fold ** 2 * (0.35 + 0.65 * v) + 0.05 * ripple)
+            y = 0.01 + rim * (0.38 * fold ** 2 * (0.35 + 0.65 * v) + 0.05 * ripple)
             x = 2.6 * (u - 0.5) + 0.10 * math.sin(4.2 * v + 0.4)
             z = 2.0 * (0.5 - v) + 0.08 * math.sin(5.1 * u)
             points.append((x, y, z))
@@ -299,7 +299,7 @@ def make_still_life():
         u, v = frame_towards(at, target)
         write_obj(name, what, *rectangle(at, mul(u, half[0]), mul(v, half[1])))
 
-    camera = Camera((0.0, 4.6, 12.0), (0.05, 1.15, 0.0), 30)
+    camera = Camera((0.1, 5.6, 15.0), (0.15, 1.1, 0.0), 30)
 
     def at(x, y, z, *before):
         return [*before, f'<translate value="{x:g}, {y:g}, {z:g}"/>']
@@ -314,26 +314,29 @@ def make_still_life():
 	<!-- Lights: three, all outside the picture. They emit towards the still life only. -->
 
 	<!-- A large cool one from the left: wide penumbras. -->
-{mesh_xml("light_window", light((2.6, 3.1, 3.9)))}
+{mesh_xml("light_window", light((5.4, 6.5, 8.2)))}
 	<!-- A small warm one from the right: shadows with a narrow penumbra. -->
-{mesh_xml("light_lamp", light((95, 66, 36)))}
+{mesh_xml("light_lamp", light((230, 165, 92)))}
 	<!-- A long narrow one from behind: shadows that are soft along it and sharp across it. -->
-{mesh_xml("light_tube", light((14, 13, 15)))}
+{mesh_xml("light_tube", light((30, 27, 31)))}
 	<!-- The table. -->
-{mesh_xml("backdrop", diffuse((0.52, 0.50, 0.47)))}
+{mesh_xml("backdrop", diffuse((0.60, 0.58, 0.54)))}
 	<!-- On the left: a glazed vase and a folded napkin. -->
-{mesh_xml("vase", phong((0.03, 0.10, 0.20), (0.10, 0.10, 0.10), 80), at(-2.35, 0, -0.7))}
-{mesh_xml("cloth", diffuse((0.66, 0.60, 0.50)), at(-1.75, 0, 2.15, turn("0, 1, 0", 24)))}
+{mesh_xml("vase", phong((0.03, 0.10, 0.20), (0.10, 0.10, 0.10), 80), at(-2.3, 0, -0.8, '<scale value="0.86, 0.86, 0.86"/>'))}
+{mesh_xml("cloth", diffuse((0.62, 0.27, 0.17)), at(-1.75, 0, 2.15, turn("0, 1, 0", 24)))}
 	<!-- In the middle: a bowl of fruit. -->
 {mesh_xml("bowl", phong((0.55, 0.52, 0.46), (0.08, 0.08, 0.08), 40), at(0.55, 0, -0.55))}
-{mesh_xml("apple", red, at(0.0, 0.50, -0.55, turn("0, 0, 1", 14)))}
-{mesh_xml("stem", wood, at(-0.21, 1.32, -0.55, turn("0, 0, 1", 24)))}
-{mesh_xml("apple", green, at(1.10, 0.52, -0.50, turn("0, 0, 1", -18)))}
-{mesh_xml("stem", wood, at(1.36, 1.33, -0.50, turn("0, 0, 1", -30)))}
-{mesh_xml("apple", red, at(0.60, 0.55, -1.20, turn("1, 0, 0", -16)))}
-{mesh_xml("pear", skin, at(0.50, 0.62, 0.05, turn("1, 0, 0", 62), turn("0, 1, 0", 28)))}
+{mesh_xml("apple", red, at(0.0, 0.50, -0.86, turn("0, 0, 1", 14)))}
+{mesh_xml("stem", wood, at(-0.21, 1.32, -0.86, turn("0, 0, 1", 24)))}
+{mesh_xml("apple", green, at(1.10, 0.52, -0.84, turn("0, 0, 1", -18)))}
+{mesh_xml("stem", wood, at(1.36, 1.33, -0.84, turn("0, 0, 1", -30)))}
+{mesh_xml("apple", red, at(0.58, 0.50, 0.05, turn("1, 0, 0", 18)))}
+{mesh_xml("stem", wood, at(0.58, 1.31, 0.31, turn("1, 0, 0", 30)))}
+	<!-- Behind the cup: a pear. -->
+{mesh_xml("pear", skin, at(2.45, 0, -1.0))}
+{mesh_xml("stem", wood, at(2.45, 1.52, -1.0, turn("0, 0, 1", -20)))}
 	<!-- On the right: a cup; in front: two eggs, lying. -->
-{mesh_xml("cup", phong((0.60, 0.60, 0.62), (0.10, 0.10, 0.10), 120), at(3.05, 0, 0.75, turn("0, 1, 0", -32)))}
+{mesh_xml("cup", phong((0.60, 0.62, 0.64), (0.10, 0.10, 0.10), 120), at(3.0, 0, 0.8, turn("0, 1, 0", -32)))}
 {mesh_xml("egg", diffuse((0.72, 0.58, 0.46)), at(0.62, 0.37, 2.2, turn("0, 0, 1", 90), turn("0, 1, 0", 25)))}
 {mesh_xml("egg", diffuse((0.74, 0.70, 0.64)), at(1.50, 0.37, 1.9, turn("0, 0, 1", 90), turn("0, 1, 0", -50)))}
 """
@@ -343,9 +346,9 @@ def make_still_life():
 
     # Places on the table and on the wall, chosen by what hides which light there.
     places = {
-        "open table": ((2.2, 0.0, 3.0), 0.35, "all three lights are seen, nothing hides them"),
+        "open table": ((3.0, 0.0, 2.6), 0.3, "all three lights are seen, nothing hides them"),
         "contact shadow": ((-2.05, 0.0, 0.25), 0.12, "the table at the foot of the vase"),
-        "penumbra": ((-3.9, 0.0, -0.9), 0.25, "the table left of the vase, where a light is partly hidden"),
+        "penumbra": ((-3.7, 0.0, 0.1), 0.2, "the table left of the vase, where a light is partly hidden"),
         "umbra": ((0.55, 0.02, 0.62), 0.12, "the table under the rim of the bowl"),
     }
     regions = []
@@ -371,8 +374,8 @@ LIGHT_X = (-3.0, -1.0, 1.0, 3.0)
 LIGHT_RADII = (0.04, 0.10, 0.24, 0.56)
 LIGHT_POWER = 40.0  # W, of each light, in each colour channel
 # name, top and bottom edge as fractions of the image height, z of the centre, exponent: the shiniest on top
-PLATES = (("top", 0.325, 0.515, 1.5, 20000), ("middle", 0.545, 0.735, 3.5, 1000), ("bottom", 0.765, 0.955, 5.5, 120))
-PLATE_KD, PLATE_KS = (0.020, 0.024, 0.030), (0.50, 0.50, 0.50)
+PLATES = (("top", 0.325, 0.515, 1.3, 20000), ("middle", 0.545, 0.735, 4.2, 1000), ("bottom", 0.765, 0.955, 7.0, 200))
+PLATE_KD, PLATE_KS = (0.012, 0.015, 0.020), (0.50, 0.50, 0.50)
 
 
 class Plate:
@@ -432,7 +435,7 @@ def make_plates():
 
 {chr(10).join(plates)}
 	<!-- A dark floor and wall. -->
-{mesh_xml("plates_backdrop", diffuse((0.05, 0.05, 0.055)))}"""
+{mesh_xml("plates_backdrop", diffuse((0.035, 0.035, 0.038)))}"""
     (HERE / "phong_plates.xml").write_text(scene_xml(
         "Exercise 3, directional against area sampling: four lights of equal power and three Phong plates, "
         "arranged as in Veach's thesis (1997, figure 9.2). Written by make_scenes.py. Lengths in metres.", 64, CAMERA,
