@@ -23,7 +23,15 @@ struct Location {
   std::size_t length = 1;  ///< Bytes to underline.
 };
 
-/// `file:line:col: problem`, the line with a caret, and the hint on a line of its own.
+/// Counted from 1; columns are characters, a tab being one.
+struct LineColumn {
+  std::size_t line, column;
+};
+/// {0, 0} where only the path is known.
+LineColumn line_and_column(const Location& where);
+
+/// `file:line:col: problem`, the line with a caret, and the hint on a line of its own. Tabs become spaces,
+/// long lines are cut around the caret, control characters and broken UTF-8 are shown as U+FFFD.
 std::string format_message(const Location& where, std::string_view problem, std::string_view hint = {});
 
 /// Thrown for any bad input or usage; what() is the complete message for a person.
@@ -34,7 +42,8 @@ class InputError : public std::runtime_error {
       : std::runtime_error(format_message(where, problem, hint)) {}
 };
 
-/// "known: a, b, c", nearest to `wrong` first (edit distance); at most `most` names.
+/// "known: a, b, c", nearest to `wrong` first (edit distance, then alphabet); at most `most` names. Where the
+/// nearest may be what was meant, "did you mean 'a'?" comes before.
 std::string known_names(std::string_view wrong, std::vector<std::string> known, std::size_t most = 8);
 
 }  // namespace etendue

@@ -1,9 +1,9 @@
 // Affine transforms, in double: they are made once from a scene's text and applied at load time.
 #pragma once
 
-#include <array>
-
 #include "base/vec.h"
+
+#include <array>
 
 namespace etendue {
 
@@ -20,16 +20,19 @@ Transform scaling(const Vec3<double>& factors);
 /// Counter-clockwise seen from the tip of `axis` (any length but zero); angle in degrees.
 Transform rotation(const Vec3<double>& axis, double angle_deg);
 /// Nori's camera frame: columns left = up x direction, new up, direction, origin.
-/// The result is singular (determinant 0) where target = origin or up is parallel to the direction.
+/// The result is singular (determinant 0) where target = origin or up is parallel to the direction (sine <
+/// 1e-12).
 Transform look_at(const Vec3<double>& origin, const Vec3<double>& target, const Vec3<double>& up);
 
 double determinant(const Transform& t);  ///< Of the upper left 3x3 block.
-/// True where all entries are finite and the 3x3 block can be inverted in floating point.
+/// True where all entries are finite and the 3x3 block can be inverted in floating point, whatever its unit
+/// of length.
 bool is_invertible(const Transform& t);
 
 Vec3<double> transform_point(const Transform& t, const Vec3<double>& p);
 Vec3<double> transform_vector(const Transform& t, const Vec3<double>& v);
-/// By the inverse transpose of the 3x3 block times its determinant's sign: outward stays outward; not normalised.
+/// By the inverse transpose of the 3x3 block: what points outward still does, also under a mirror image
+/// (which turns the winding of triangles over); not normalised. Needs is_invertible(t).
 Vec3<double> transform_normal(const Transform& t, const Vec3<double>& n);
 
 }  // namespace etendue

@@ -1,12 +1,13 @@
 // A triangle mesh as it lies in memory: positions, optional vertex normals and uvs, indices.
 #pragma once
 
+#include "base/transform.h"
+#include "base/vec.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include "base/transform.h"
-#include "base/vec.h"
 
 namespace etendue {
 
@@ -14,9 +15,10 @@ namespace etendue {
 struct Mesh {
   std::string name;  ///< For messages: the file's path, or what generated it.
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;  ///< Unit, one per position, or empty.
-  std::vector<Vec2f> uvs;      ///< One per position, or empty.
+  std::vector<Vec3f> normals;          ///< Unit, one per position, or empty.
+  std::vector<Vec2f> uvs;              ///< One per position, or empty.
   std::vector<std::uint32_t> indices;  ///< Three per triangle.
+  std::size_t dropped_triangles = 0;   ///< Left out for having no area; worth a warning.
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "film/film.h"
+#include "integrator/integrator.h"
 #include "render/isa.h"
 #include "scene/scene.h"
 
@@ -16,10 +17,11 @@ namespace etendue {
 
 /// How to render; what is not given comes from the scene file.
 struct RenderSettings {
+  IntegratorSettings integrator;
   int samples_per_pixel = 16;  ///< In all, over all replicates.
   int replicates = 4;          ///< Must divide samples_per_pixel.
   std::uint64_t seed = 0;
-  int threads = 0;  ///< 0: all that the process may use.
+  int threads = 0;             ///< 0: all that the process may use.
   Isa isa = Isa::scalar;
   bool is_reordering = true;  ///< Aim shadow packets; off only to show that it changes nothing.
 };
@@ -45,6 +47,9 @@ struct RenderResult {
 
 /// Called from one thread at a time with the fraction done in [0, 1], a few times a second.
 using ProgressCallback = std::function<void(double fraction)>;
+
+/// Threads that a render takes where none are asked for: those that this process may run on.
+int available_threads();
 
 /// Throws InputError where the settings do not fit the scene.
 RenderResult render(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress = {},

@@ -1,11 +1,11 @@
 // What a plugin accepts, stated once: it drives reading, checking, `etendue info` and the documentation test.
 #pragma once
 
+#include "scenefile/scene_desc.h"
+
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "scenefile/scene_desc.h"
 
 namespace etendue {
 
@@ -14,7 +14,7 @@ struct Parameter {
   enum class Type { boolean, integer, real, text, color, point, vector, transform };
   std::string name;
   Type type;
-  std::string default_value;  ///< As text, parsed like the file's; empty: the parameter has no default.
+  std::string default_value;  ///< As text, parsed like the file's, or "identity"; empty: there is none.
   std::string unit;           ///< "m", "deg", "W/(m^2 sr)", "" for pure numbers.
   std::string meaning;
   bool is_required = false;
@@ -35,10 +35,11 @@ struct UnreadKey {
 };
 
 /// The values of one object, checked against its plugin: types right, required ones present, defaults filled.
+/// Object and plugin must outlive it. To ask for what the plugin does not have is a std::logic_error.
 class Parameters {
  public:
-  /// Throws InputError for a wrong type, a missing required parameter or one stated twice. Keys that the plugin
-  /// does not know are appended to `unread`.
+  /// Throws InputError for a wrong type, a missing required parameter or one stated twice. Keys that the
+  /// plugin does not know are appended to `unread`.
   Parameters(const Object& object, const Plugin& plugin, std::vector<UnreadKey>& unread);
 
   bool is_stated(std::string_view name) const;  ///< The file has it (no default was used).
@@ -47,8 +48,8 @@ class Parameters {
   int integer(std::string_view name) const;
   double real(std::string_view name) const;  ///< Integers are accepted.
   std::string text(std::string_view name) const;
-  Colorf color(std::string_view name) const;
-  Vec3<double> point(std::string_view name) const;
+  Colorf color(std::string_view name) const;        ///< A single number is grey.
+  Vec3<double> point(std::string_view name) const;  ///< Either of <point> and <vector> is accepted for both.
   Vec3<double> vector(std::string_view name) const;
   Transform transform(std::string_view name) const;
 
@@ -57,14 +58,23 @@ class Parameters {
   const Object& object() const { return *object_; }
 
  private:
-  const Property::Value& value(std::string_view name) const;
   struct Entry {
     const Parameter* parameter;
-    Property::Value value;
-    const Property* stated;
+    Property::Value value;   ///< Of the alternative that parameter->type names.
+    const Property* stated;  ///< Null where defaulted.
   };
+  const Entry* find(std::string_view name) const;
+  const Property::Value& value(std::string_view name) const;
   const Object* object_;
   std::vector<Entry> entries_;
 };
+
+/// A colour parameter whose channels must be finite and >= 0 (reflectance, radiance); else throws InputError.
+Colorf nonnegative_color(const Parameters& parameters, std::string_view name);
+
+/// The error for an object whose type none of `known` has: its place, the known names nearest first.
+InputError unknown_plugin(const Object& object, const std::vector<Plugin>& known);
+/// The same for a name that comes from the command line.
+InputError unknown_plugin(std::string_view family, std::string_view name, const std::vector<Plugin>& known);
 
 }  // namespace etendue

@@ -1,14 +1,14 @@
 // What the user wrote: a tree of objects with properties, each with its place in the file.
 #pragma once
 
+#include "base/color.h"
+#include "base/error.h"
+#include "base/transform.h"
+
 #include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
-
-#include "base/color.h"
-#include "base/error.h"
-#include "base/transform.h"
 
 namespace etendue {
 
@@ -17,11 +17,11 @@ enum class Dialect { nori_2012, nori_eth, nori };
 
 /// One `<float name="fov" value="30"/>`; the alternatives are the types a file can state.
 struct Property {
-  using Value = std::variant<bool, int, double, std::string, Colorf, Vec3<double>, Transform>;
+  using Value = std::variant<bool, int, double, std::string, Colorf, Vec3<double>, Transform, Vec2<double>>;
   std::string name;
   std::string tag;  ///< As written: boolean, integer, float, string, color, point, vector, transform.
   Value value;
-  Location name_location, value_location;
+  Location name_location, value_location;  ///< Without the quotes; the tag where the element has no `value`.
 };
 
 /// One element that names a plugin, e.g. `<bsdf type="phong">`, with what is inside it in file order.

@@ -1,0 +1,233 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/hash.h"
+#include "commands.h"
+#include "film/image_file.h"
+#include "progress.h"
+#include "render/render.h"
+#include "scene/load_scene.h"
+#include "scenefile/nori_xml.h"
+
+namespace etendue::app {
+
+namespace {
+
+struct Options {
+  std::string scene_file;
+  std::vector<std::string> outputs;
+  std::string integrator, sampler, isa, dialect, stats_file;
+  std::optional<int> samples_per_pixel, replicates;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  bool is_quiet = false, is_strict = false, is_in_sample_order = false;
+};
+
+std::atomic<bool> stop_requested{false};
+
+/// The first Ctrl-C ends the render early and keeps what is done; the second one kills.
+extern "C" void handle_interrupt(int signal_number) {
+  stop_requested = true;
+  std::signal(signal_number, SIG_DFL);
+}
+
+/// The largest divisor of `samples` up to 8, so that a pixel's error is known where it can be.
+int default_replicates(int samples) {
+  constexpr int most = 8;
+  for (int replicates = most; replicates > 1; --replicates)
+    if (samples % replicates == 0) return replicates;
+  return 1;
+}
+
+RenderSettings settings_for(const Options& options, const LoadedScene& loaded) {
+  RenderSettings settings;
+  settings.samples_per_pixel = options.samples_per_pixel.value_or(loaded.samples_per_pixel);
+  if (settings.samples_per_pixel < 1)
+    throw InputError(fmt::format("--spp {}: at least 1 sample a pixel is needed", settings.samples_per_pixel));
+  settings.replicates = options.replicates.value_or(default_replicates(settings.samples_per_pixel));
+  settings.seed = options.seed;
+  settings.threads = options.threads;
+  settings.isa = options.isa.empty() ? available_isas().back() : isa_from_name(options.isa);
+  settings.is_reordering = !options.is_in_sample_order;
+  return settings;
+}
+
+/// The command line's integrator where it names one; the file's parameters hold where both name the same.
+IntegratorSettings integrator_for(const Options& options, const LoadedScene& loaded, std::vector<UnreadKey>& unread) {
+  const std::string& in_file = loaded.integrator.type;
+  if (!options.integrator.empty() && options.integrator != in_file) return integrator_from_name(options.integrator);
+  return loaded.integrator.family.empty() ? IntegratorSettings{} : make_integrator(loaded.integrator, unread);
+}
+
+Image to_image(const Film& film) {
+  Image image;
+  image.width = film.width();
+  image.height = film.height();
+  const auto size = std::size_t(film.width()) * std::size_t(film.height());
+  for (const char* name : {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"})
+    image.channels.push_back({name, std::vector<float>(size)});
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const PixelStatistics& pixel = film.at(x, y);
+      const Color<double> error = standard_error(pixel);
+      const std::size_t at = std::size_t(y) * std::size_t(film.width()) + std::size_t(x);
+      const std::array values{pixel.mean.r, pixel.mean.g, pixel.mean.b, error.r, error.g, error.b};
+      for (std::size_t c = 0; c < values.size(); ++c) image.channels[c].values[at] = float(values[c]);
+    }
+  return image;
+}
+
+/// Of the scene file's text: to tell whether two images are of one scene.
+std::uint64_t text_hash(std::string_view text) {
+  std::uint64_t hash = text.size();
+  for (const char c : text) hash = hash64(hash ^ std::uint8_t(c));
+  return hash;
+}
+
+std::int64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t(usage.ru_maxrss) * 1024;
+}
+
+nlohmann::ordered_json stats(const Options& options, const RenderSettings& settings, const SceneDesc& description,
+                             const LoadedScene& loaded, const RenderResult& result, int threads) {
+  const Color<double> mean = result.film.mean();
+  nlohmann::ordered_json json;
+  json["scene"] = options.scene_file;
+  json["dialect"] = dialect_name(description.dialect);
+  json["integrator"] = integrator_name(settings.integrator.kind);
+  json["sampler"] = sampler_name(loaded.scene.sampler);
+  json["spp"] = settings.samples_per_pixel;
+  json["replicates"] = settings.replicates;
+  json["seed"] = settings.seed;
+  json["threads"] = threads;
+  json["isa"] = isa_name(settings.isa);
+  json["width"] = result.film.width();
+  json["height"] = result.film.height();
+  json["seconds_load"] = loaded.seconds_read;
+  json["seconds_build"] = loaded.seconds_build;
+  json["seconds_render"] = result.seconds;
+  json["samples"] = result.counts.samples;
+  json["samples_per_second"] = double(result.counts.samples) / result.seconds;
+  json["camera_rays"] = result.counts.camera_rays;
+  json["shadow_rays"] = result.counts.shadow_rays;
+  json["bsdf_rays"] = result.counts.bsdf_rays;
+  json["invalid_samples"] = result.counts.invalid_samples;
+  json["mean"] = {mean.r, mean.g, mean.b};
+  json["mean_luminance"] = luminance(mean);
+  json["triangles"] = loaded.scene.geometry.triangle_count();
+  json["lights"] = loaded.scene.lights.count();
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  return json;
+}
+
+void write_text_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw InputError(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+}
+
+void warn(const Options& options, const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return;
+  if (options.is_strict) throw InputError(fmt::format("{}\n  (--strict makes warnings errors)", fmt::join(warnings, "\n")));
+  if (options.is_quiet) return;
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+void report_invalid(const RenderResult& result) {
+  if (result.counts.invalid_samples == 0) return;
+  fmt::print(stderr, "warning: {} samples were not finite or negative; each counts as 0 in its pixel\n",
+             result.counts.invalid_samples);
+  for (const InvalidSample& sample : result.invalid)
+    fmt::print(stderr, "  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y,
+               sample.replicate, sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
+}
+
+int run(const Options& options) {
+  for (const std::string& output : options.outputs) check_writable(output);
+  const std::optional<Dialect> dialect =
+      options.dialect.empty() ? std::nullopt : std::optional(dialect_from_name(options.dialect));
+  const SceneDesc description = read_nori_xml(options.scene_file, dialect);
+  LoadedScene loaded = load_scene(description, options.threads);
+  if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
+  RenderSettings settings = settings_for(options, loaded);
+  std::vector<UnreadKey> unread;
+  settings.integrator = integrator_for(options, loaded, unread);
+  for (const UnreadKey& key : unread) loaded.warnings.push_back(key.message);
+  warn(options, loaded.warnings);
+  const int threads = options.threads > 0 ? options.threads : available_threads();
+  if (!options.is_quiet)
+    fmt::print(stderr, "{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n",
+               options.scene_file, dialect_name(description.dialect), description.dialect_reason,
+               loaded.scene.camera.width_px, loaded.scene.camera.height_px, settings.samples_per_pixel,
+               settings.replicates, integrator_name(settings.integrator.kind), threads, isa_name(settings.isa));
+
+  std::signal(SIGINT, handle_interrupt);
+  const RenderResult result = [&] {
+    Progress progress("render", options.is_quiet);
+    return render(loaded.scene, settings, [&](double fraction) { progress.update(fraction); }, &stop_requested);
+  }();
+  report_invalid(result);
+
+  Image image = to_image(result.film);
+  image.metadata = {{"scene", options.scene_file},
+                    {"sceneHash", fmt::format("{:016x}", text_hash(description.root.location.source->text))},
+                    {"seed", std::to_string(settings.seed)},
+                    {"replicates", fmt::format("0-{}", settings.replicates - 1)},
+                    {"samplesPerPixel", std::to_string(settings.samples_per_pixel)},
+                    {"integrator", std::string(integrator_name(settings.integrator.kind))},
+                    {"sampler", std::string(sampler_name(loaded.scene.sampler))},
+                    {"software", "Etendue " ETENDUE_VERSION}};
+  for (const std::filesystem::path output : options.outputs)
+    output.extension() == ".png" ? write_png(output, image) : write_exr(output, image);
+  if (!options.stats_file.empty())
+    write_text_file(options.stats_file,
+                    stats(options, settings, description, loaded, result, threads).dump(2) + "\n");
+  if (!options.is_quiet)
+    fmt::print(stderr, "{} in {}: {:.1f} million samples a second\n",
+               result.is_interrupted ? "interrupted, saved what was done" : "done", duration_text(result.seconds),
+               1e-6 * double(result.counts.samples) / result.seconds);
+  return result.is_interrupted ? interrupted : done;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("render", "Render a scene to EXR and PNG images");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scene_file, "Scene file (XML of the Nori family)")->required();
+  command->add_option("-o,--output", options->outputs,
+                      "Image to write, .exr (radiance and its standard error) or .png (sRGB); may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("--integrator", options->integrator, "Instead of the file's; see etendue info");
+  command->add_option("--sampler", options->sampler, "Instead of the file's: independent or sobol");
+  command->add_option("--spp", options->samples_per_pixel, "Samples a pixel in all, instead of the file's");
+  command->add_option("--replicates", options->replicates,
+                      "Independent parts that the samples of a pixel are split into, from which its error is "
+                      "estimated; must divide --spp [largest divisor up to 8]");
+  command->add_option("--seed", options->seed, "Another seed: other random numbers")->capture_default_str();
+  command->add_option("--threads", options->threads, "Threads; 0: all cores")->capture_default_str()->check(CLI::Range(0, 4096));
+  command->add_option("--isa", options->isa, "Instruction set: scalar, v2, v3 or v4 [the widest here]");
+  command->add_option("--stats", options->stats_file, "JSON file for settings, times and counts");
+  command->add_option("--dialect", options->dialect, "Read the scene as nori-2012, nori-eth or nori");
+  command->add_flag("--quiet", options->is_quiet, "No progress, no warnings");
+  command->add_flag("--strict", options->is_strict, "Warnings, such as an unknown key, are errors");
+  command->add_flag("--sample-order", options->is_in_sample_order,
+                    "Trace shadow rays in sample order, not aimed: slower, the same image");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace etendue::app

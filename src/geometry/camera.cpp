@@ -1,0 +1,80 @@
+#include "geometry/camera.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace etendue {
+
+namespace {
+
+using Type = Parameter::Type;
+
+const Plugin perspective_plugin{
+    "camera",
+    "perspective",
+    "A pinhole camera that looks along +z of its frame.",
+    {{"width", Type::integer, "1280", "px", "Width of the image"},
+     {"height", Type::integer, "720", "px", "Height of the image"},
+     {"fov", Type::real, "30", "deg", "Horizontal field of view"},
+     {"nearClip", Type::real, "1e-4", "m", "Nothing nearer is seen"},
+     {"farClip", Type::real, "1e4", "m", "Nothing farther is seen"},
+     {"toWorld", Type::transform, "", "", "World from camera; identity unless given"}},
+    {"rfilter", "sampler"}};
+
+constexpr int most_pixels_a_side = 1 << 16;
+
+int side(const Parameters& parameters, std::string_view name) {
+  const int value = parameters.integer(name);
+  if (value < 1 || value > most_pixels_a_side)
+    throw InputError(parameters.location(name),
+                     fmt::format("'{}' is {}; it must be from 1 to {}", name, value, most_pixels_a_side));
+  return value;
+}
+
+}  // namespace
+
+const std::vector<Plugin>& camera_plugins() {
+  static const std::vector<Plugin> plugins{perspective_plugin};
+  return plugins;
+}
+
+Camera make_camera(const Object& description, Dialect dialect, std::vector<UnreadKey>& unread) {
+  if (description.type != perspective_plugin.name) throw unknown_plugin(description, camera_plugins());
+  const Parameters parameters(description, perspective_plugin, unread);
+  Camera camera;
+  camera.width_px = side(parameters, "width");
+  camera.height_px = side(parameters, "height");
+  const double fov_deg = parameters.real("fov");
+  if (!(fov_deg > 0 && fov_deg < 180))
+    throw InputError(parameters.location("fov"),
+                     fmt::format("'fov' is {}; it must lie between 0 and 180 degrees", fov_deg));
+  camera.near_clip = float(parameters.real("nearClip"));
+  camera.far_clip = float(parameters.real("farClip"));
+  if (!(camera.near_clip > 0 && camera.near_clip < camera.far_clip))
+    throw InputError(parameters.location("nearClip"),
+                     fmt::format("the clip planes are at {} and {}; 0 < nearClip < farClip is needed",
+                                 camera.near_clip, camera.far_clip));
+  const Transform world_from_camera =
+      parameters.has("toWorld") ? parameters.transform("toWorld") : Transform{};
+  if (!is_invertible(world_from_camera))
+    throw InputError(parameters.location("toWorld"), "the camera's transform is singular",
+                     "in a lookat, target must differ from origin and up must not be parallel to the direction");
+
+  // Which way film x runs is what the generations of the family disagree on; see docs/conventions.md.
+  const double image_right = dialect == Dialect::nori ? -1 : 1;
+  const double half_width = std::tan(0.5 * fov_deg * std::numbers::pi / 180);
+  const double px = 2 * half_width / camera.width_px;
+  const auto to_world = [&](const Vec3<double>& v) {
+    const Vec3<double> w = transform_vector(world_from_camera, v);
+    return Vec3f{float(w.x), float(w.y), float(w.z)};
+  };
+  const Vec3<double> origin = transform_point(world_from_camera, {0, 0, 0});
+  camera.origin = {float(origin.x), float(origin.y), float(origin.z)};
+  camera.at_film_origin = to_world({-image_right * half_width, 0.5 * px * camera.height_px, 1});
+  camera.per_px_x = to_world({image_right * px, 0, 0});
+  camera.per_px_y = to_world({0, -px, 0});
+  return camera;
+}
+
+}  // namespace etendue

@@ -1,0 +1,47 @@
+#include "geometry/geometry.h"
+
+#include <limits>
+
+#include "base/error.h"
+
+namespace etendue {
+
+std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
+  // A gather's index is 3 * vertex or 3 * triangle + corner in 32 bits.
+  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() / 3;
+  if (positions.size() + mesh.positions.size() > most || indices.size() + mesh.indices.size() > most)
+    throw InputError("the scene has more than 715 million vertices or 238 million triangles");
+  const auto first_vertex = std::int32_t(positions.size());
+  material.push_back(ids.material);
+  light.push_back(ids.light);
+  first_triangle.push_back(std::int32_t(indices.size() / 3));
+  has_normals.push_back(mesh.normals.empty() ? 0 : 1);
+  triangles.push_back(std::int32_t(mesh.triangle_count()));
+  sphere.push_back(-1);
+  has_any_normals = has_any_normals || !mesh.normals.empty();
+  positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+  if (mesh.normals.empty())
+    normals.resize(positions.size(), Vec3f{0, 0, 0});
+  else
+    normals.insert(normals.end(), mesh.normals.begin(), mesh.normals.end());
+  if (mesh.uvs.empty())
+    uvs.resize(positions.size(), Vec2f{0, 0});
+  else
+    uvs.insert(uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+  indices.reserve(indices.size() + mesh.indices.size());
+  for (const std::uint32_t index : mesh.indices) indices.push_back(first_vertex + std::int32_t(index));
+  return count() - 1;
+}
+
+std::int32_t Geometry::add_sphere(const Sphere& added, SurfaceIds ids) {
+  material.push_back(ids.material);
+  light.push_back(ids.light);
+  first_triangle.push_back(0);
+  has_normals.push_back(0);
+  triangles.push_back(0);
+  sphere.push_back(std::int32_t(spheres.size()));
+  spheres.push_back(added);
+  return count() - 1;
+}
+
+}  // namespace etendue

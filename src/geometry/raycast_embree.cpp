@@ -1,0 +1,315 @@
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#if ETENDUE_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "base/error.h"
+#include "geometry/raycast.h"
+
+namespace etendue {
+
+namespace {
+
+// One packet type per width, under one set of names; the two releases of Embree differ only here.
+
+#if ETENDUE_EMBREE_MAJOR >= 4
+struct Query {
+  RTCIntersectArguments intersect;
+  RTCOccludedArguments occluded;
+  explicit Query(Coherence coherence) {
+    const auto flags =
+        coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    rtcInitIntersectArguments(&intersect);
+    rtcInitOccludedArguments(&occluded);
+    intersect.flags = flags;
+    occluded.flags = flags;
+  }
+};
+#define ETENDUE_QUERY_INTERSECT(call, scene, query, packet) call(scene, packet, &(query).intersect)
+#define ETENDUE_QUERY_OCCLUDED(call, scene, query, packet) call(scene, packet, &(query).occluded)
+#define ETENDUE_QUERY_INTERSECT_N(call, valid, scene, query, packet) \
+  call(valid, scene, packet, &(query).intersect)
+#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) call(valid, scene, packet, &(query).occluded)
+#else
+struct Query {
+  RTCIntersectContext context;
+  explicit Query(Coherence coherence) {
+    rtcInitIntersectContext(&context);
+    context.flags = coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                     : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  }
+};
+#define ETENDUE_QUERY_INTERSECT(call, scene, query, packet) call(scene, &(query).context, packet)
+#define ETENDUE_QUERY_OCCLUDED(call, scene, query, packet) call(scene, &(query).context, packet)
+#define ETENDUE_QUERY_INTERSECT_N(call, valid, scene, query, packet) \
+  call(valid, scene, &(query).context, packet)
+#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) call(valid, scene, &(query).context, packet)
+#endif
+
+/// Rays and hits of `width` lanes as arrays, whatever Embree calls them.
+template <int width>
+struct Packet;
+
+template <>
+struct Packet<1> {
+  using Rays = RTCRay;
+  using RayHits = RTCRayHit;
+  static void intersect(const int* valid, RTCScene scene, Query& query, RayHits* packet) {
+    if (*valid) ETENDUE_QUERY_INTERSECT(rtcIntersect1, scene, query, packet);
+  }
+  static void occluded(const int* valid, RTCScene scene, Query& query, Rays* packet) {
+    if (*valid) ETENDUE_QUERY_OCCLUDED(rtcOccluded1, scene, query, packet);
+  }
+};
+
+#define ETENDUE_PACKET(width)                                                                           \
+  template <>                                                                                           \
+  struct Packet<width> {                                                                                \
+    using Rays = RTCRay##width;                                                                         \
+    using RayHits = RTCRayHit##width;                                                                   \
+    static void intersect(const int* valid, RTCScene scene, Query& query, RayHits* packet) {            \
+      ETENDUE_QUERY_INTERSECT_N(rtcIntersect##width, valid, scene, query, packet);                      \
+    }                                                                                                   \
+    static void occluded(const int* valid, RTCScene scene, Query& query, Rays* packet) {                \
+      ETENDUE_QUERY_OCCLUDED_N(rtcOccluded##width, valid, scene, query, packet);                        \
+    }                                                                                                   \
+  }
+ETENDUE_PACKET(4);
+ETENDUE_PACKET(8);
+ETENDUE_PACKET(16);
+
+/// The first lane of a member, which is an array or, for width 1, a single value.
+template <class T>
+T* lanes_of(T& member) {
+  return &member;
+}
+template <class T, std::size_t n>
+T* lanes_of(T (&member)[n]) {
+  return member;
+}
+
+template <int width, class To, class From>
+void copy_lanes(To& to, const From* from) {
+  static_assert(sizeof(To) == width * sizeof(From));
+  std::memcpy(&to, from, sizeof(To));
+}
+template <int width, class From, class To>
+void copy_lanes_back(To* to, const From& from) {
+  static_assert(sizeof(From) == width * sizeof(To));
+  std::memcpy(to, &from, sizeof(From));
+}
+template <class Member>
+void set_bytes(Member& member, int byte) {
+  std::memset(&member, byte, sizeof(member));
+}
+
+template <int width>
+void closest_hits_wide(RTCScene scene, const RaySpan& rays, const HitSpan& hits, Coherence coherence) {
+  Query query(coherence);
+  alignas(64) typename Packet<width>::RayHits packet;
+  alignas(64) std::int32_t valid[width];
+  set_bytes(packet.ray.time, 0);
+  set_bytes(packet.ray.flags, 0);
+  set_bytes(packet.ray.id, 0);
+  set_bytes(packet.ray.mask, 0xff);
+  set_bytes(packet.hit.instID[0], 0xff);
+  for (int i = 0; i < rays.count; i += width) {
+    copy_lanes<width>(packet.ray.org_x, rays.origin_x + i);
+    copy_lanes<width>(packet.ray.org_y, rays.origin_y + i);
+    copy_lanes<width>(packet.ray.org_z, rays.origin_z + i);
+    copy_lanes<width>(packet.ray.dir_x, rays.direction_x + i);
+    copy_lanes<width>(packet.ray.dir_y, rays.direction_y + i);
+    copy_lanes<width>(packet.ray.dir_z, rays.direction_z + i);
+    copy_lanes<width>(packet.ray.tnear, rays.t_near + i);
+    copy_lanes<width>(packet.ray.tfar, rays.t_far + i);
+    copy_lanes<width>(valid, rays.is_active + i);
+    set_bytes(packet.hit.geomID, 0xff);
+    Packet<width>::intersect(valid, scene, query, &packet);
+    copy_lanes_back<width>(hits.t + i, packet.ray.tfar);
+    copy_lanes_back<width>(hits.ng_x + i, packet.hit.Ng_x);
+    copy_lanes_back<width>(hits.ng_y + i, packet.hit.Ng_y);
+    copy_lanes_back<width>(hits.ng_z + i, packet.hit.Ng_z);
+    copy_lanes_back<width>(hits.u + i, packet.hit.u);
+    copy_lanes_back<width>(hits.v + i, packet.hit.v);
+    copy_lanes_back<width>(hits.geometry + i, packet.hit.geomID);
+    copy_lanes_back<width>(hits.primitive + i, packet.hit.primID);
+  }
+}
+
+template <int width>
+void unoccluded_wide(RTCScene scene, const SegmentSpan& segments, std::int32_t* is_visible, Coherence coherence) {
+  Query query(coherence);
+  alignas(64) typename Packet<width>::Rays packet;
+  alignas(64) std::int32_t valid[width];
+  set_bytes(packet.time, 0);
+  set_bytes(packet.flags, 0);
+  set_bytes(packet.id, 0);
+  set_bytes(packet.mask, 0xff);
+  set_bytes(packet.tnear, 0);
+  for (int i = 0; i < segments.count; i += width) {
+    for (int lane = 0; lane < width; ++lane) {
+      const std::int32_t at = segments.order[i + lane];
+      valid[lane] = at >= 0 ? -1 : 0;
+      const std::int32_t from = at >= 0 ? at : 0;
+      lanes_of(packet.org_x)[lane] = segments.origin_x[from];
+      lanes_of(packet.org_y)[lane] = segments.origin_y[from];
+      lanes_of(packet.org_z)[lane] = segments.origin_z[from];
+      lanes_of(packet.dir_x)[lane] = segments.direction_x[from];
+      lanes_of(packet.dir_y)[lane] = segments.direction_y[from];
+      lanes_of(packet.dir_z)[lane] = segments.direction_z[from];
+      lanes_of(packet.tfar)[lane] = segments.t_far;
+    }
+    Packet<width>::occluded(valid, scene, query, &packet);
+    // Embree marks an occluded ray by tfar = -infinity.
+    for (int lane = 0; lane < width; ++lane)
+      if (valid[lane]) is_visible[segments.order[i + lane]] = lanes_of(packet.tfar)[lane] >= 0 ? -1 : 0;
+  }
+}
+
+/// The nearest root in (t_near, t_far) of |origin + t direction - center| = radius, or NaN.
+double nearest_sphere_hit(const Sphere& sphere, const Vec3<double>& origin, const Vec3<double>& direction,
+                          double t_near, double t_far) {
+  const Vec3<double> from_center{origin.x - sphere.center.x, origin.y - sphere.center.y,
+                                 origin.z - sphere.center.z};
+  const double a = length_sq(direction), half_b = dot(from_center, direction);
+  // The discriminant from the distance of the line to the centre: no cancellation for distant spheres
+  // (Hearn and Baker, in Haines et al. 2019, "Precision improvements for ray/sphere intersection").
+  const Vec3<double> closest = from_center - direction * (half_b / a);
+  const double discriminant = double(sphere.radius) * sphere.radius - length_sq(closest);
+  if (discriminant < 0) return std::nan("");
+  const double half_chord = std::sqrt(discriminant / a), middle = -half_b / a;
+  for (const double t : {middle - half_chord, middle + half_chord})
+    if (t > t_near && t < t_far) return t;
+  return std::nan("");
+}
+
+void sphere_bounds(const RTCBoundsFunctionArguments* args) {
+  const Sphere& sphere = static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
+  // A little wider than the sphere, so that rounding never cuts it.
+  const float r = sphere.radius * (1 + 1e-6f);
+  RTCBounds& bounds = *args->bounds_o;
+  bounds.lower_x = sphere.center.x - r;
+  bounds.lower_y = sphere.center.y - r;
+  bounds.lower_z = sphere.center.z - r;
+  bounds.upper_x = sphere.center.x + r;
+  bounds.upper_y = sphere.center.y + r;
+  bounds.upper_z = sphere.center.z + r;
+}
+
+template <class RayN>
+double hit_lane(const Sphere& sphere, RayN* rays, unsigned n, unsigned lane) {
+  return nearest_sphere_hit(
+      sphere, {RTCRayN_org_x(rays, n, lane), RTCRayN_org_y(rays, n, lane), RTCRayN_org_z(rays, n, lane)},
+      {RTCRayN_dir_x(rays, n, lane), RTCRayN_dir_y(rays, n, lane), RTCRayN_dir_z(rays, n, lane)},
+      RTCRayN_tnear(rays, n, lane), RTCRayN_tfar(rays, n, lane));
+}
+
+void sphere_intersect(const RTCIntersectFunctionNArguments* args) {
+  const Sphere& sphere = static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    if (!args->valid[lane]) continue;
+    const double t = hit_lane(sphere, rays, args->N, lane);
+    if (!(t == t)) continue;
+    RTCRayN_tfar(rays, args->N, lane) = float(t);
+    RTCHitN_Ng_x(hits, args->N, lane) =
+        float(RTCRayN_org_x(rays, args->N, lane) + t * RTCRayN_dir_x(rays, args->N, lane) - sphere.center.x);
+    RTCHitN_Ng_y(hits, args->N, lane) =
+        float(RTCRayN_org_y(rays, args->N, lane) + t * RTCRayN_dir_y(rays, args->N, lane) - sphere.center.y);
+    RTCHitN_Ng_z(hits, args->N, lane) =
+        float(RTCRayN_org_z(rays, args->N, lane) + t * RTCRayN_dir_z(rays, args->N, lane) - sphere.center.z);
+    RTCHitN_u(hits, args->N, lane) = 0;
+    RTCHitN_v(hits, args->N, lane) = 0;
+    RTCHitN_geomID(hits, args->N, lane) = args->geomID;
+    RTCHitN_primID(hits, args->N, lane) = args->primID;
+  }
+}
+
+void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
+  const Sphere& sphere = static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    if (!args->valid[lane]) continue;
+    const double t = hit_lane(sphere, args->ray, args->N, lane);
+    if (t == t) RTCRayN_tfar(args->ray, args->N, lane) = -INFINITY;
+  }
+}
+
+[[noreturn]] void throw_embree_error(RTCDevice device, const char* doing) {
+  throw InputError("the ray caster failed " + std::string(doing) + " (Embree error " +
+                   std::to_string(int(rtcGetDeviceError(device))) + "); is there enough memory?");
+}
+
+}  // namespace
+
+struct RayCaster::Embree {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  ~Embree() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+};
+
+RayCaster::RayCaster(const Geometry& geometry, int threads) : embree_(std::make_unique<Embree>()) {
+  const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : "";
+  embree_->device = rtcNewDevice(config.c_str());
+  if (!embree_->device) throw_embree_error(nullptr, "to start");
+  embree_->scene = rtcNewScene(embree_->device);
+  for (std::int32_t id = 0; id < geometry.count(); ++id) {
+    RTCGeometry shape;
+    if (geometry.sphere[id] < 0) {
+      shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+      rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions.data(), 0,
+                                 sizeof(Vec3f), geometry.positions.size());
+      rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices.data(),
+                                 std::size_t(geometry.first_triangle[id]) * 3 * sizeof(std::int32_t),
+                                 3 * sizeof(std::int32_t), geometry.triangles[id]);
+    } else {
+      shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_USER);
+      rtcSetGeometryUserPrimitiveCount(shape, 1);
+      rtcSetGeometryUserData(shape, const_cast<Sphere*>(&geometry.spheres[geometry.sphere[id]]));
+      rtcSetGeometryBoundsFunction(shape, sphere_bounds, nullptr);
+      rtcSetGeometryIntersectFunction(shape, sphere_intersect);
+      rtcSetGeometryOccludedFunction(shape, sphere_occluded);
+    }
+    rtcCommitGeometry(shape);
+    rtcAttachGeometryByID(embree_->scene, shape, unsigned(id));
+    rtcReleaseGeometry(shape);
+  }
+  rtcCommitScene(embree_->scene);
+  if (const RTCError error = rtcGetDeviceError(embree_->device); error != RTC_ERROR_NONE)
+    throw InputError("the ray caster could not build the scene (Embree error " + std::to_string(int(error)) +
+                     "); is there enough memory?");
+}
+
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+void RayCaster::closest_hits(const RaySpan& rays, const HitSpan& hits, int width, Coherence coherence) const {
+  switch (width) {
+    case 1: return closest_hits_wide<1>(embree_->scene, rays, hits, coherence);
+    case 4: return closest_hits_wide<4>(embree_->scene, rays, hits, coherence);
+    case 8: return closest_hits_wide<8>(embree_->scene, rays, hits, coherence);
+    default: return closest_hits_wide<16>(embree_->scene, rays, hits, coherence);
+  }
+}
+
+void RayCaster::unoccluded(const SegmentSpan& segments, std::int32_t* is_visible, int width,
+                           Coherence coherence) const {
+  switch (width) {
+    case 1: return unoccluded_wide<1>(embree_->scene, segments, is_visible, coherence);
+    case 4: return unoccluded_wide<4>(embree_->scene, segments, is_visible, coherence);
+    case 8: return unoccluded_wide<8>(embree_->scene, segments, is_visible, coherence);
+    default: return unoccluded_wide<16>(embree_->scene, segments, is_visible, coherence);
+  }
+}
+
+}  // namespace etendue

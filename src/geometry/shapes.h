@@ -1,0 +1,14 @@
+// Shapes that a scene names without a file, as meshes.
+#pragma once
+
+#include "geometry/mesh.h"
+
+namespace etendue {
+
+/// The square [-1, 1]^2 at z = 0, facing +z, uv (0, 0) at (-1, -1) and (1, 1) at (1, 1); then
+/// `world_from_object`. Two triangles, flat. A mirroring transform keeps the front side: normals go by the
+/// inverse transpose. Two triangles come back whatever the transform; the caller checks that it
+/// is_invertible().
+Mesh make_rectangle(const Transform& world_from_object);
+
+}  // namespace etendue

@@ -1,0 +1,56 @@
+// One light sample: choose a light, choose a point on it, its radiance over the density of that choice.
+#pragma once
+
+#include "light/light.h"
+#include "lightsampler/uniform.h"
+#include "scene/scene.h"
+
+namespace etendue {
+
+/// A sample of the light that arrives at a reference point, visibility left out.
+template <class F>
+struct LightSample {
+  Vec3<F> position;     ///< On the light, world (m).
+  Vec3<F> wi;           ///< Unit, from the reference point to the light.
+  Color<F> radiance_over_pdf;  ///< Emitted radiance times cos(theta'') / distance^2 over the density per area; the
+                               ///< cosine at the receiver is left to the caller. 0: the light faces away.
+  F pdf_solid_angle;    ///< 1/sr at the reference point, the probability of the light included; 0: no sample.
+  Int<F> aim;           ///< Near values: near points of one light.
+};
+
+/// Area sampling of the lights: uniform choice of a light, a point on it by `sample_position`, the geometry term
+/// without the receiver's cosine, and the probability from `pdf_area`.
+/// \param u_light one 2-D sample, which chooses the light and places the point
+template <class F>
+LightSample<F> sample_lights(const Scene& scene, const Vec3<F>& reference, const Vec2<UInt<F>>& u_light,
+                             const Mask<F>& m) {
+  const LightChoice<F> choice = choose_light_uniformly<F>(scene.lights.count(), u_light.x);
+  const LightPoint<F> point =
+      scene.lights.sample_position<F>(scene.geometry, choice.light, reference, {choice.u_left, u_light.y}, m);
+
+  const Vec3<F> to_light = point.position - reference;
+  const F distance_sq = length_sq(to_light);
+  const Vec3<F> wi = to_light * (F(1) / sqrt(distance_sq));
+  const F cos_theta_light = -dot(point.ng, wi);
+  const Mask<F> is_facing =
+      mask_and(m, cos_theta_light > F(0), dot(point.ns, wi) < F(0), point.pdf_area > F(0));
+
+  const F geometry_term = cos_theta_light / distance_sq;
+  const F pdf_area = choice.pmf * point.pdf_area;
+  const F scale = select(is_facing, geometry_term / pdf_area, F(0));
+  const F pdf_solid_angle = select(is_facing, solid_angle_from_area(pdf_area, distance_sq, cos_theta_light), F(0));
+  return {point.position, wi, scene.lights.radiance<F>(choice.light, m) * scale, pdf_solid_angle,
+          choice.light * Int<F>(light_pieces) + point.piece};
+}
+
+/// The density (1/sr) with which `sample_lights` gives the direction `wi` from `reference`, which meets `light` at
+/// `position` with geometric normal `ng`; the probability of the light included.
+template <class F>
+F light_pdf_solid_angle(const Scene& scene, const Int<F>& light, const Vec3<F>& reference, const Vec3<F>& position,
+                        const Vec3<F>& ng, const Vec3<F>& wi, const Mask<F>& m) {
+  const F pdf_area = F(uniform_light_pmf(scene.lights.count())) *
+                     scene.lights.pdf_area<F>(light, reference, position, ng, m);
+  return solid_angle_from_area(pdf_area, length_sq(position - reference), -dot(ng, wi));
+}
+
+}  // namespace etendue

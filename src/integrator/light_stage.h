@@ -1,0 +1,116 @@
+// The light stages: sample the lights, aim the shadow rays, add what nothing hides.
+#pragma once
+
+#include "base/frame.h"
+#include "bsdf/bsdf.h"
+#include "integrator/camera_stage.h"
+#include "integrator/light_sampling.h"
+#include "integrator/mis_weights.h"
+#include "integrator/sample_block.h"
+#include "integrator/surface_point.h"
+
+namespace etendue {
+
+/// For each sample: a light sample, its shadow segment, and what it adds to the radiance where it is visible.
+template <class F>
+void sample_lights(const Scene& scene, SampleBlock& block, Combination combination) {
+  for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
+    const SurfacePoint<F> surface(block, i);
+    if (!any(surface.is_there)) {
+      store_lanes(&block.shadow_is_needed[i], Int<F>(0));
+      continue;
+    }
+    const Vec2<UInt<F>> u_light = sample_bits<F>(scene, block, i, dimension::light);
+    const LightSample<F> sample = sample_lights<F>(scene, surface.position, u_light, surface.is_there);
+
+    const Frame<F> frame(surface.ns);
+    const Vec3<F> wo_local = frame.local_from_world(surface.wo), wi_local = frame.local_from_world(sample.wi);
+    const Mask<F> is_lit = mask_and(surface.is_there, sample.pdf_solid_angle > F(0), surface.reflects_towards(sample.wi));
+    Color<F> reflected{F(0), F(0), F(0)};
+    for_each_material<F>(scene.materials, surface.material, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
+      F weight = wi_local.z;
+      if (needs_both_pdfs(combination))
+        weight = weight * mis_weight(combination, select(lanes, sample.pdf_solid_angle, F(1)),
+                                     bsdf.pdf_solid_angle_(wo_local, wi_local));
+      else
+        weight = weight * mis_weight(combination, F(1), F(1));
+      const Color<F> f = bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * weight;
+      reflected = {select(lanes, f.r, reflected.r), select(lanes, f.g, reflected.g), select(lanes, f.b, reflected.b)};
+    });
+
+    store_lanes(block.unshadowed, i, reflected);
+    // Not "greater than 0": a NaN must reach the sum, where it is reported.
+    const Mask<F> is_dark = mask_and(reflected.r == F(0), reflected.g == F(0), reflected.b == F(0));
+    store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, mask_not(is_dark)));
+    const Vec3<F> origin = surface.offset_origin();
+    store_lanes(block.shadow_origin, i, origin);
+    store_lanes(block.shadow_direction, i, sample.position - origin);
+    store_lanes(&block.aim[i], sample.aim);
+  }
+  block.clock.finish(Stage::light_samples);
+}
+
+/// Orders the shadow rays that are needed so that a packet aims at one piece of one light: a counting sort by `aim`.
+/// Order only: results go back to the sample's place.
+inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
+  constexpr int most_bins = 1024;
+  int shift = 0;
+  while (((std::int64_t(scene.lights.count()) * light_pieces - 1) >> shift) >= most_bins) ++shift;
+  std::array<std::int32_t, most_bins + 1> start{};
+  for (int i = 0; i < block.count; ++i)
+    start[std::size_t(block.aim[i] >> shift) + 1] -= block.shadow_is_needed[i];
+  for (int bin = 0; bin < most_bins; ++bin) start[bin + 1] += start[bin];
+  block.shadow_count = start[most_bins];
+  for (int i = 0; i < block.count; ++i)
+    if (block.shadow_is_needed[i]) block.order[std::size_t(start[std::size_t(block.aim[i] >> shift)]++)] = i;
+  block.clock.finish(Stage::aiming);
+}
+
+/// The same rays in sample order: to show that the order changes no result.
+inline void keep_shadow_rays_in_order(SampleBlock& block) {
+  block.shadow_count = 0;
+  for (int i = 0; i < block.count; ++i)
+    if (block.shadow_is_needed[i]) block.order[std::size_t(block.shadow_count++)] = i;
+  block.clock.finish(Stage::aiming);
+}
+
+/// Casts the shadow rays in their order and adds the light samples that nothing hides.
+template <class F>
+void add_unshadowed(const Scene& scene, SampleBlock& block, Coherence coherence) {
+  int padded = block.shadow_count;
+  while (padded % lane_count_v<F> != 0) block.order[std::size_t(padded++)] = -1;
+  const SegmentSpan segments{block.shadow_origin.x.data(),
+                             block.shadow_origin.y.data(),
+                             block.shadow_origin.z.data(),
+                             block.shadow_direction.x.data(),
+                             block.shadow_direction.y.data(),
+                             block.shadow_direction.z.data(),
+                             block.order.data(),
+                             padded,
+                             shadow_segment_end};
+  block.shadow_is_free.fill(0);
+  scene.rays.unoccluded(segments, block.shadow_is_free.data(), lane_count_v<F>, coherence);
+  for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
+    const Mask<F> is_free = load_mask<F>(&block.shadow_is_free[i]);
+    if (!any(is_free)) continue;
+    const Color<F> unshadowed = load_lanes<F>(block.unshadowed, i);
+    const Color<F> direct{select(is_free, unshadowed.r, F(0)), select(is_free, unshadowed.g, F(0)),
+                          select(is_free, unshadowed.b, F(0))};
+    store_lanes(block.radiance, i, load_lanes<F>(block.radiance, i) + direct);
+  }
+  block.shadow_rays += block.shadow_count;
+  block.clock.finish(Stage::shadow_rays);
+}
+
+/// All of the above, as integrators that sample lights use it.
+template <class F>
+void add_light_samples(const Scene& scene, SampleBlock& block, Combination combination, bool is_reordering) {
+  sample_lights<F>(scene, block, combination);
+  if (is_reordering)
+    aim_shadow_rays(scene, block);
+  else
+    keep_shadow_rays_in_order(block);
+  add_unshadowed<F>(scene, block, is_reordering ? Coherence::coherent : Coherence::incoherent);
+}
+
+}  // namespace etendue

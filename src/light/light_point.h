@@ -1,0 +1,40 @@
+// A sampled point on a light, and the change between densities per area and per solid angle.
+#pragma once
+
+#include "base/simd_math.h"
+#include "base/vec.h"
+
+namespace etendue {
+
+template <class F>
+struct LightPoint {
+  Vec3<F> position;  ///< World, m.
+  Vec3<F> ng;        ///< Unit geometric normal; what the Jacobian uses.
+  Vec3<F> ns;        ///< Interpolated normal, any length; the light shines where both normals face the receiver.
+  F pdf_area;        ///< 1/m^2; 0: no sample (a receiver inside of a sphere).
+  Int<F> piece;      ///< 0 .. light_pieces - 1: near points of a light have near pieces; orders shadow rays only.
+};
+
+inline constexpr int light_pieces = 16;
+
+template <class F>
+LightPoint<F> select(const Mask<F>& m, const LightPoint<F>& a, const LightPoint<F>& b) {
+  const auto vec = [&](const Vec3<F>& p, const Vec3<F>& q) {
+    return Vec3<F>{select(m, p.x, q.x), select(m, p.y, q.y), select(m, p.z, q.z)};
+  };
+  return {vec(a.position, b.position), vec(a.ng, b.ng), vec(a.ns, b.ns), select(m, a.pdf_area, b.pdf_area),
+          select(m, a.piece, b.piece)};
+}
+
+/// Density per solid angle (1/sr) at the receiver from one per area (1/m^2) on the light.
+/// \param cos_theta_light between the light's geometric normal and the direction to the receiver, > 0
+template <class F>
+F solid_angle_from_area(const F& pdf_area, const F& distance_sq, const F& cos_theta_light) {
+  return pdf_area * distance_sq / cos_theta_light;
+}
+template <class F>
+F area_from_solid_angle(const F& pdf_solid_angle, const F& distance_sq, const F& cos_theta_light) {
+  return pdf_solid_angle * cos_theta_light / distance_sq;
+}
+
+}  // namespace etendue

@@ -1,0 +1,75 @@
+// Area lights on triangle meshes of any size: a triangle by area, then a point uniform within it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/simd_math.h"
+#include "base/warp.h"
+#include "geometry/geometry.h"
+#include "light/light_point.h"
+
+namespace etendue {
+
+class MeshLights {
+ public:
+  /// Makes the mesh `geometry_id` a light; returns its row. Its total area must be positive.
+  std::int32_t add(const Geometry& geometry, std::int32_t geometry_id);
+
+  /// The triangle comes from u.y through an alias table (O(1)); what is left of u.y is stretched back over [0, 1).
+  template <class F>
+  LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& row, const Vec3<F>& /*reference*/,
+                                const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+    using I = Int<F>;
+    const I first = gather(first_triangle_.data(), row), count = gather(triangle_count_.data(), row);
+    const I bucket = as_int(mul_hi(u.y, as_uint(count)));
+    const UInt<F> fraction = u.y * as_uint(count);
+    const UInt<F> threshold = gather(alias_threshold_.data(), first + bucket);
+    const auto is_own = less(fraction, threshold);
+    const I triangle = select(is_own, bucket, gather(alias_.data(), first + bucket));
+    const F left = to_unit_float(fraction), split = to_unit_float(threshold);
+    const F stretched = select(is_own, left / max(split, F(0x1p-24f)), (left - split) / max(F(1) - split, F(0x1p-24f)));
+    const Vec2<F> u_triangle{to_unit_float(u.x), min(max(stretched, F(0)), F(0x1.fffffep-1f))};
+
+    const float* corner = triangles_.data();
+    const I at = (first + triangle) * I(9);
+    const auto vec = [&](int offset) {
+      return Vec3<F>{gather(corner + offset, at), gather(corner + offset + 1, at), gather(corner + offset + 2, at)};
+    };
+    const Vec3<F> origin = vec(0), edge_1 = vec(3), edge_2 = vec(6);
+    const Vec2<F> barycentric = square_to_triangle(u_triangle);
+
+    LightPoint<F> point;
+    point.position = origin + edge_1 * barycentric.x + edge_2 * barycentric.y;
+    point.ng = normalize(cross(edge_1, edge_2));
+    point.ns = point.ng;
+    const I geometry_id = gather(geometry_id_.data(), row);
+    const auto is_smooth = mask_and(m, equal(gather(geometry.has_normals.data(), geometry_id), I(1)));
+    if (any(is_smooth)) {
+      const Vec3<F> ns = interpolate_normal<F>(geometry, geometry_id, triangle, barycentric, is_smooth);
+      point.ns = {select(is_smooth, ns.x, point.ng.x), select(is_smooth, ns.y, point.ng.y),
+                  select(is_smooth, ns.z, point.ng.z)};
+    }
+    point.pdf_area = gather(pdf_area_.data(), row);
+    const F along = (to_float(triangle) + u_triangle.y) / to_float(count);
+    point.piece = to_int(along * F(float(light_pieces) * 0.999f));
+    return point;
+  }
+
+  /// 1 / total area
+  template <class F>
+  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/, const Vec3<F>& /*ng*/) const {
+    return gather(pdf_area_.data(), row);
+  }
+
+ private:
+  // Per light.
+  std::vector<std::int32_t> geometry_id_, first_triangle_, triangle_count_;
+  std::vector<float> pdf_area_;
+  // Per triangle of all lights: the alias table, and a corner and two edges.
+  std::vector<std::uint32_t> alias_threshold_;
+  std::vector<std::int32_t> alias_;
+  std::vector<float> triangles_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,48 @@
+// Rectangular (and parallelogram) area lights: a point uniform over the whole.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/simd_math.h"
+#include "geometry/geometry.h"
+#include "light/light_point.h"
+
+namespace etendue {
+
+class RectangleLights {
+ public:
+  /// Spanned by two edges from a corner; shines along their cross product. Returns the row.
+  std::int32_t add(const Vec3f& corner, const Vec3f& edge_u, const Vec3f& edge_v) {
+    const Vec3f across = cross(edge_u, edge_v);
+    const Vec3f ng = normalize(across);
+    for (const Vec3f& v : {corner, edge_u, edge_v, ng}) fields_.insert(fields_.end(), {v.x, v.y, v.z});
+    pdf_area_.push_back(1 / length(across));
+    return std::int32_t(pdf_area_.size()) - 1;
+  }
+
+  template <class F>
+  LightPoint<F> sample_position(const Geometry& /*geometry*/, const Int<F>& row, const Vec3<F>& /*reference*/,
+                                const Vec2<UInt<F>>& u, const Mask<F>& /*m*/) const {
+    const Int<F> at = row * Int<F>(12);
+    const auto vec = [&](int offset) {
+      const float* field = fields_.data() + offset;
+      return Vec3<F>{gather(field, at), gather(field + 1, at), gather(field + 2, at)};
+    };
+    const F x = to_unit_float(u.x), y = to_unit_float(u.y);
+    const Vec3<F> ng = vec(9);
+    const Int<F> piece = to_int(x * F(4)) * Int<F>(4) + to_int(y * F(4));
+    return {vec(0) + vec(3) * x + vec(6) * y, ng, ng, gather(pdf_area_.data(), row), piece};
+  }
+
+  template <class F>
+  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/, const Vec3<F>& /*ng*/) const {
+    return gather(pdf_area_.data(), row);
+  }
+
+ private:
+  std::vector<float> fields_;  ///< Corner, two edges, normal: 12 a row.
+  std::vector<float> pdf_area_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,86 @@
+// Spherical area lights: a direction uniform in the cone that the sphere fills.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/frame.h"
+#include "base/simd_math.h"
+#include "base/warp.h"
+#include "geometry/geometry.h"
+#include "light/light_point.h"
+
+namespace etendue {
+
+/// Wang 1992, "Physically correct direct lighting for distribution ray tracing" (Graphics Gems III).
+class SphereLights {
+ public:
+  std::int32_t add(const Sphere& sphere) {
+    fields_.insert(fields_.end(), {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius});
+    return std::int32_t(fields_.size() / 4) - 1;
+  }
+
+  template <class F>
+  LightPoint<F> sample_position(const Geometry& /*geometry*/, const Int<F>& row, const Vec3<F>& reference,
+                                const Vec2<UInt<F>>& u, const Mask<F>& /*m*/) const {
+    const Cone<F> cone(*this, row, reference);
+    const Vec2<F> u_cone{to_unit_float(u.x), to_unit_float(u.y)};
+    // From the angle at the receiver to the angle at the centre, from which the point follows without cancellation
+    // (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th ed., section 6.2.4).
+    const F one_minus_cos = u_cone.x * cone.one_minus_cos_max;
+    const F cos_theta = F(1) - one_minus_cos;
+    const F sin_theta_sq = max(one_minus_cos * (F(2) - one_minus_cos), F(0));
+    const F sin_ratio_sq = min(sin_theta_sq / cone.sin_max_sq, F(1));
+    const F sin_max = sqrt(cone.sin_max_sq);
+    const F cos_center = sin_ratio_sq * sin_max + cos_theta * sqrt(F(1) - sin_ratio_sq);
+    const F sin_center = sqrt(max(F(1) - cos_center * cos_center, F(0)));
+    F sine, cosine;
+    sincos_turns(u_cone.y, sine, cosine);
+    const Vec3<F> ng =
+        Frame<F>(-cone.to_center).world_from_local({sin_center * cosine, sin_center * sine, cos_center});
+    LightPoint<F> point;
+    point.position = cone.center + ng * cone.radius;
+    point.ng = ng;
+    point.ns = ng;
+    point.pdf_area = pdf_area<F>(row, reference, point.position, ng);
+    point.piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));
+    return point;
+  }
+
+  template <class F>
+  F pdf_area(const Int<F>& row, const Vec3<F>& reference, const Vec3<F>& position, const Vec3<F>& ng) const {
+    const Cone<F> cone(*this, row, reference);
+    const Vec3<F> to_receiver = reference - position;
+    const F distance_sq = length_sq(to_receiver);
+    const F cos_theta_light = dot(ng, to_receiver) / sqrt(distance_sq);
+    const F pdf = area_from_solid_angle(uniform_cone_pdf_solid_angle(cone.one_minus_cos_max), distance_sq, cos_theta_light);
+    return select(mask_and(cone.is_outside, cos_theta_light > F(0)), pdf, F(0));
+  }
+
+ private:
+  /// The cone of directions from a receiver to the sphere.
+  template <class F>
+  struct Cone {
+    Vec3<F> center, to_center;
+    F radius, sin_max_sq, one_minus_cos_max;
+    Mask<F> is_outside;
+
+    Cone(const SphereLights& lights, const Int<F>& row, const Vec3<F>& reference) {
+      const Int<F> at = row * Int<F>(4);
+      const float* field = lights.fields_.data();
+      center = {gather(field, at), gather(field + 1, at), gather(field + 2, at)};
+      radius = gather(field + 3, at);
+      const Vec3<F> offset = center - reference;
+      const F distance_sq = length_sq(offset);
+      is_outside = distance_sq > radius * radius;
+      to_center = offset * (F(1) / sqrt(select(is_outside, distance_sq, F(1))));
+      sin_max_sq = select(is_outside, radius * radius / distance_sq, F(1));
+      // 1 - sqrt(1 - s) without cancellation for small s.
+      one_minus_cos_max = sin_max_sq / (F(1) + sqrt(max(F(1) - sin_max_sq, F(0))));
+    }
+  };
+
+  std::vector<float> fields_;  ///< Centre and radius: 4 a row.
+};
+
+}  // namespace etendue

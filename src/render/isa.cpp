@@ -1,0 +1,82 @@
+#include "render/isa.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+#include "base/error.h"
+#include "render/kernel.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr std::array all_isas{Isa::scalar, Isa::v2, Isa::v3, Isa::v4};
+constexpr std::array<std::string_view, 4> names{"scalar", "v2", "v3", "v4"};
+
+bool has_isa(Isa isa) {
+  __builtin_cpu_init();
+  switch (isa) {
+    case Isa::scalar: return true;
+    case Isa::v2: return __builtin_cpu_supports("x86-64-v2");
+    case Isa::v3: return __builtin_cpu_supports("x86-64-v3");
+    case Isa::v4: return __builtin_cpu_supports("x86-64-v4");
+  }
+  return false;
+}
+
+/// The folder that holds this library, and the modules beside it.
+std::filesystem::path library_folder() {
+  Dl_info info;
+  if (!dladdr(reinterpret_cast<const void*>(&isa_name), &info))
+    throw InputError("cannot find the folder of the Etendue library");
+  return std::filesystem::path(info.dli_fname).parent_path();
+}
+
+const Kernel* load_kernel(Isa isa) {
+  const std::filesystem::path file = library_folder() / fmt::format("libetendue_kernel_{}.so", isa_name(isa));
+  void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!module)
+    throw InputError(fmt::format("cannot load the kernel for '{}': {}\n  build the target etendue_kernel", isa_name(isa), dlerror()));
+  void* entry = dlsym(module, "etendue_kernel");
+  if (!entry) throw InputError(fmt::format("{} is not a kernel: {}", file.string(), dlerror()));
+  return reinterpret_cast<const Kernel* (*)()>(entry)();
+}
+
+}  // namespace
+
+std::string_view isa_name(Isa isa) { return names[std::size_t(isa)]; }
+
+std::vector<Isa> available_isas() {
+  std::vector<Isa> available;
+  for (const Isa isa : all_isas)
+    if (has_isa(isa)) available.push_back(isa);
+  return available;
+}
+
+Isa isa_from_name(std::string_view name) {
+  for (const Isa isa : all_isas) {
+    if (isa_name(isa) != name) continue;
+    if (!has_isa(isa)) throw InputError(fmt::format("this machine has no '{}' instructions; see etendue info", name));
+    return isa;
+  }
+  throw InputError(fmt::format("unknown instruction set '{}'; {}", name,
+                               known_names(name, std::vector<std::string>(names.begin(), names.end()))));
+}
+
+int lane_count(Isa isa) { return kernel_for(isa).lanes; }
+
+const Kernel& kernel_for(Isa isa) {
+  static std::array<const Kernel*, all_isas.size()> kernels{};
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const Kernel*& kernel = kernels[std::size_t(isa)];
+  if (!kernel) kernel = load_kernel(isa);
+  return *kernel;
+}
+
+}  // namespace etendue

@@ -1,0 +1,36 @@
+// The door between the program and a kernel module: one table per instruction set.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "film/film.h"
+#include "integrator/integrator.h"
+#include "integrator/sample_block.h"
+#include "render/render.h"
+
+namespace etendue {
+
+/// A rectangle of pixels to render, upper bounds exclusive, and where its results go.
+struct TileJob {
+  const Scene* scene;
+  const RenderSettings* settings;
+  int x_begin, y_begin, x_end, y_end;
+  SampleBlock* block;  ///< Scratch of this thread.
+  Film* film;
+  std::vector<InvalidSample>* invalid;
+  std::int64_t invalid_samples = 0;
+  /// Called after each block, where set: benchmarks look at the rays.
+  const std::function<void(const SampleBlock&)>* on_block = nullptr;
+};
+
+/// What a module exports, through the C function `etendue_kernel`.
+struct Kernel {
+  int lanes;
+  void (*render_tile)(TileJob&);
+};
+
+/// Loads the module once. Throws InputError where it is missing.
+const Kernel& kernel_for(Isa isa);
+
+}  // namespace etendue

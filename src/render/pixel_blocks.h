@@ -1,0 +1,146 @@
+// A tile as a sequence of blocks: many samples of one pixel, or few of each pixel of a small square.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "film/film.h"
+#include "integrator/sample_block.h"
+#include "render/kernel.h"
+#include "sampler/sampler.h"
+
+namespace etendue {
+
+/// Sums a replicate's samples in an order that depends on their indices alone.
+class ReplicateSum {
+ public:
+  /// Adds values[0 .. count - 1], the samples `first_index`, `first_index` + 1 ...
+  void add(const float* values, int count, int first_index) {
+    int i = 0;
+    for (; i < count && (first_index + i) % slots != 0; ++i) slot_[(first_index + i) % slots] += values[i];
+    for (; i + slots <= count; i += slots)
+      for (int s = 0; s < slots; ++s) slot_[s] += values[i + s];
+    for (; i < count; ++i) slot_[(first_index + i) % slots] += values[i];
+  }
+  /// The sum so far; starts anew.
+  double take() {
+    double total = 0;
+    for (const double value : slot_) total += value;
+    slot_.fill(0);
+    return total;
+  }
+
+ private:
+  static constexpr int slots = 8;
+  std::array<double, slots> slot_{};
+};
+
+class PixelBlocks {
+ public:
+  explicit PixelBlocks(const TileJob& job)
+      : job_(job),
+        samples_(job.settings->samples_per_pixel),
+        per_replicate_(samples_ / job.settings->replicates) {
+    while (2 * height_ * width_ * samples_ <= block_capacity) (width_ > height_ ? height_ : width_) *= 2;
+    means_.resize(std::size_t(job.settings->replicates));
+    x_ = job.x_begin;
+    y_ = job.y_begin;
+  }
+
+  int samples_per_replicate() const { return per_replicate_; }
+  /// The sample of its pixel, over all replicates, that stands at position `i` of the block.
+  std::int64_t sample_of(int i) const { return first_sample_ + i % samples_in_block_; }
+
+  /// Fills in who the next block's samples are; false at the end of the tile.
+  bool next(SampleBlock& block) {
+    if (y_ >= job_.y_end) return false;
+    pixels_.clear();
+    for (int y = y_; y < std::min(y_ + height_, job_.y_end); ++y)
+      for (int x = x_; x < std::min(x_ + width_, job_.x_end); ++x) pixels_.push_back({x, y});
+    samples_in_block_ = std::min(samples_ - first_sample_, block_capacity);
+    block.count = 0;
+    for (const Pixel& pixel : pixels_) fill_pixel(block, pixel);
+    constexpr int widest = 16;
+    block.padded_count = (block.count + widest - 1) / widest * widest;
+    for (int i = block.count; i < block.padded_count; ++i) {
+      const int last = block.count - 1;
+      block.pixel_x[i] = block.pixel_x[last];
+      block.pixel_y[i] = block.pixel_y[last];
+      block.stream_lo[i] = block.stream_lo[last];
+      block.stream_hi[i] = block.stream_hi[last];
+      block.index[i] = block.index[last];
+    }
+    return true;
+  }
+
+  /// Takes in the block's radiance, and moves on.
+  void add_to_film(const SampleBlock& block, Film& film) {
+    int i = 0;
+    for (const Pixel& pixel : pixels_) {
+      for_each_run([&](int replicate, int index, int count) {
+        sum_r_.add(&block.radiance.r[i], count, index);
+        sum_g_.add(&block.radiance.g[i], count, index);
+        sum_b_.add(&block.radiance.b[i], count, index);
+        i += count;
+        if (index + count == per_replicate_) {
+          const double scale = 1.0 / per_replicate_;
+          means_[std::size_t(replicate)] = {sum_r_.take() * scale, sum_g_.take() * scale, sum_b_.take() * scale};
+        }
+      });
+      if (first_sample_ + samples_in_block_ == samples_) film.at(pixel.x, pixel.y) = combine_replicates(means_, 0);
+    }
+    first_sample_ += samples_in_block_;
+    if (first_sample_ < samples_) return;
+    first_sample_ = 0;
+    x_ += width_;
+    if (x_ >= job_.x_end) {
+      x_ = job_.x_begin;
+      y_ += height_;
+    }
+  }
+
+ private:
+  struct Pixel {
+    int x, y;
+  };
+
+  /// f(replicate, index of the first sample in it, count) over this block's samples of one pixel.
+  template <class Function>
+  void for_each_run(Function&& f) const {
+    int sample = first_sample_;
+    const int end = first_sample_ + samples_in_block_;
+    while (sample < end) {
+      const int replicate = sample / per_replicate_, index = sample % per_replicate_;
+      const int count = std::min(end - sample, per_replicate_ - index);
+      f(replicate, index, count);
+      sample += count;
+    }
+  }
+
+  void fill_pixel(SampleBlock& block, const Pixel& pixel) {
+    for_each_run([&](int replicate, int index, int count) {
+      const std::uint64_t stream = sample_stream(job_.settings->seed, pixel.x, pixel.y, replicate);
+      for (int k = 0; k < count; ++k) {
+        const int i = block.count + k;
+        block.pixel_x[i] = pixel.x;
+        block.pixel_y[i] = pixel.y;
+        block.stream_lo[i] = std::uint32_t(stream);
+        block.stream_hi[i] = std::uint32_t(stream >> 32);
+        block.index[i] = std::uint32_t(index + k);
+      }
+      block.count += count;
+    });
+  }
+
+  const TileJob& job_;
+  const int samples_, per_replicate_;
+  int width_ = 1, height_ = 1;  ///< Pixels a block.
+  int x_ = 0, y_ = 0;           ///< Upper left of the current block.
+  int first_sample_ = 0, samples_in_block_ = 0;
+  std::vector<Pixel> pixels_;
+  ReplicateSum sum_r_, sum_g_, sum_b_;
+  std::vector<Color<double>> means_;
+};
+
+}  // namespace etendue

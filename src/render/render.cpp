@@ -1,0 +1,97 @@
+#include "render/render.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <tuple>
+
+#include "render/kernel.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr int tile_side_px = 32;
+
+/// One thread's scratch and counts.
+struct Worker {
+  std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
+  std::vector<InvalidSample> invalid;
+  std::int64_t samples = 0, invalid_samples = 0;
+};
+
+void check(const RenderSettings& settings) {
+  if (settings.samples_per_pixel < 1)
+    throw InputError(fmt::format("{} samples a pixel; at least 1 is needed", settings.samples_per_pixel));
+  if (settings.replicates < 1 || settings.samples_per_pixel % settings.replicates != 0)
+    throw InputError(fmt::format("{} samples a pixel cannot be split into {} equal replicates",
+                                 settings.samples_per_pixel, settings.replicates));
+}
+
+bool is_before(const InvalidSample& a, const InvalidSample& b) {
+  return std::tie(a.y, a.x, a.replicate, a.index) < std::tie(b.y, b.x, b.replicate, b.index);
+}
+
+}  // namespace
+
+int available_threads() { return tbb::this_task_arena::max_concurrency(); }
+
+RenderResult render(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress,
+                    const std::atomic<bool>* stop) {
+  check(settings);
+  const Kernel& kernel = kernel_for(settings.isa);
+  RenderResult result{Film(scene.camera.width_px, scene.camera.height_px), {}, {}, 0, false};
+  const int columns = (scene.camera.width_px + tile_side_px - 1) / tile_side_px;
+  const int rows = (scene.camera.height_px + tile_side_px - 1) / tile_side_px;
+  const auto start = std::chrono::steady_clock::now();
+
+  tbb::enumerable_thread_specific<Worker> workers;
+  std::atomic<int> tiles_done{0};
+  std::mutex progress_mutex;
+  const auto render_tile = [&](int tile) {
+    if (stop && stop->load(std::memory_order_relaxed)) return;
+    Worker& worker = workers.local();
+    const int x = tile % columns * tile_side_px, y = tile / columns * tile_side_px;
+    TileJob job{.scene = &scene,
+                .settings = &settings,
+                .x_begin = x,
+                .y_begin = y,
+                .x_end = std::min(x + tile_side_px, scene.camera.width_px),
+                .y_end = std::min(y + tile_side_px, scene.camera.height_px),
+                .block = worker.block.get(),
+                .film = &result.film,
+                .invalid = &worker.invalid};
+    kernel.render_tile(job);
+    worker.samples += std::int64_t(job.x_end - job.x_begin) * (job.y_end - job.y_begin) * settings.samples_per_pixel;
+    worker.invalid_samples += job.invalid_samples;
+    const int done = ++tiles_done;
+    if (!progress) return;
+    if (const std::unique_lock lock(progress_mutex, std::try_to_lock); lock)
+      progress(double(done) / (columns * rows));
+  };
+  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(0, columns * rows, render_tile, tbb::simple_partitioner{});
+  });
+
+  for (const Worker& worker : workers) {
+    result.counts.samples += worker.samples;
+    result.counts.camera_rays += worker.block->camera_rays;
+    result.counts.shadow_rays += worker.block->shadow_rays;
+    result.counts.bsdf_rays += worker.block->bsdf_rays;
+    result.counts.invalid_samples += worker.invalid_samples;
+    result.invalid.insert(result.invalid.end(), worker.invalid.begin(), worker.invalid.end());
+  }
+  std::sort(result.invalid.begin(), result.invalid.end(), is_before);
+  result.is_interrupted = tiles_done < columns * rows;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace etendue

@@ -1,0 +1,58 @@
+// Random numbers as a pure function of (seed, pixel, replicate, index, dimension).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "base/hash.h"
+#include "base/simd_math.h"
+#include "base/vec.h"
+#include "sampler/sobol.h"
+#include "scenefile/parameters.h"
+
+namespace etendue {
+
+/// `independent`: uncorrelated numbers. `sobol`: Owen-scrambled Sobol points, one scrambling a replicate.
+enum class SamplerKind { independent, sobol };
+
+const std::vector<Plugin>& sampler_plugins();
+/// Throws InputError with the known names.
+SamplerKind sampler_from_name(std::string_view name);
+std::string_view sampler_name(SamplerKind kind);
+
+/// Pairs of dimensions, by consumer. A consumer has the same pair in every integrator, so that integrators can be
+/// compared sample by sample.
+namespace dimension {
+inline constexpr std::uint32_t film = 0, light = 1, bsdf = 2;
+}
+
+/// The 64-bit key of one (seed, pixel, replicate); its halves seed the lanes.
+inline std::uint64_t sample_stream(std::uint64_t seed, int x, int y, std::int64_t replicate) {
+  return hash64(hash64(hash64(seed) ^ std::uint64_t(replicate)) ^ (std::uint64_t(std::uint32_t(y)) << 32) ^
+                std::uint32_t(x));
+}
+
+/// Two times 32 uniform random bits for each lane.
+/// \param stream_lo,stream_hi the halves of `sample_stream`
+/// \param index of the sample within its replicate
+template <class F>
+Vec2<UInt<F>> sample_2d(SamplerKind kind, const UInt<F>& stream_lo, const UInt<F>& stream_hi,
+                        const UInt<F>& index, std::uint32_t pair) {
+  using U = UInt<F>;
+  const U seed_index = hash32(stream_lo + U(pair * 0x9e3779b9u));
+  const U seed_x = hash32(stream_hi + U(pair * 0x85ebca6bu));
+  if (kind == SamplerKind::independent) {
+    const U x = hash32(hash32(index ^ seed_index) + seed_x);
+    return {x, hash32(x ^ hash32(seed_x + index * U(0xc2b2ae35u)))};
+  }
+  return owen_sobol_2d(index, seed_index, seed_x, hash32(seed_x ^ seed_index));
+}
+
+template <class F>
+Vec2<F> to_unit_floats(const Vec2<UInt<F>>& bits) {
+  return {to_unit_float(bits.x), to_unit_float(bits.y)};
+}
+
+}  // namespace etendue

@@ -1,0 +1,163 @@
+#include "scene/load_scene.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "scene/load_shape.h"
+
+namespace etendue {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Collects the parts of a scene as the file lists them.
+class Loader {
+ public:
+  explicit Loader(const SceneDesc& description) : description_(description) {}
+
+  LoadedScene load(int threads) {
+    const Object& root = description_.root;
+    if (root.family != "scene")
+      throw InputError(root.location, fmt::format("the root is <{}>, not <scene>", root.family));
+    Parameters(root, scene_plugin(), unread_);
+    for (const Object& child : root.children) add(child);
+    if (!camera_)
+      throw InputError(root.location, "the scene has no camera", "add <camera type=\"perspective\"> with a toWorld transform");
+    if (geometry_.count() == 0)
+      throw InputError(root.location, "the scene has no shapes", "add <mesh type=\"obj\"> with a filename");
+    if (lights_.count() == 0)
+      throw InputError(root.location, "the scene has no light: its image would be black",
+                       "put <luminaire type=\"area\"> with a radiance inside a mesh");
+    const Clock::time_point start = Clock::now();
+    RayCaster rays(geometry_, threads);
+    const double seconds_build = seconds_since(start);
+    return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_), std::move(rays),
+                  std::move(materials_), std::move(lights_), sampler_},
+            integrator_ ? *integrator_ : Object{},
+            samples_per_pixel_,
+            warnings(),
+            seconds_read_,
+            seconds_build};
+  }
+
+ private:
+  static const Plugin& scene_plugin() {
+    static const Plugin plugin{"scene", "", "", {}, {"integrator", "sampler", "camera", "mesh", "shape", "rfilter"}};
+    return plugin;
+  }
+
+  void add(const Object& child) {
+    if (child.family == "camera") {
+      once(camera_.has_value(), child);
+      camera_ = make_camera(child, description_.dialect, unread_);
+      for (const Object& part : child.children) {
+        if (part.family == "rfilter")
+          add_filter(part);
+        else if (part.family == "sampler")
+          add_sampler(part);
+        else
+          throw misplaced(part, child, "rfilter, sampler");
+      }
+    } else if (child.family == "rfilter") {
+      add_filter(child);
+    } else if (child.family == "sampler") {
+      add_sampler(child);
+    } else if (child.family == "integrator") {
+      once(integrator_.has_value(), child);
+      integrator_ = child;
+    } else if (is_shape(child)) {
+      const Clock::time_point start = Clock::now();
+      add_shape(child);
+      seconds_read_ += seconds_since(start);
+    } else {
+      throw misplaced(child, description_.root, "camera, integrator, mesh, rfilter, sampler, shape");
+    }
+  }
+
+  void add_filter(const Object& child) {
+    once(filter_.has_value(), child);
+    filter_ = make_filter(child, unread_);
+  }
+
+  void add_sampler(const Object& child) {
+    once(has_sampler_, child);
+    has_sampler_ = true;
+    const Plugin* plugin = nullptr;
+    for (const Plugin& known : sampler_plugins())
+      if (known.name == child.type) plugin = &known;
+    if (!plugin) throw unknown_plugin(child, sampler_plugins());
+    const Parameters parameters(child, *plugin, unread_);
+    sampler_ = sampler_from_name(child.type);
+    samples_per_pixel_ = parameters.integer("sampleCount");
+    if (samples_per_pixel_ < 1)
+      throw InputError(parameters.location("sampleCount"),
+                       fmt::format("'sampleCount' is {}; it must be at least 1", samples_per_pixel_));
+  }
+
+  void add_shape(const Object& object) {
+    const Object* bsdf = nullptr;
+    const Object* light = nullptr;
+    for (const Object& part : object.children) {
+      if (is_bsdf(part)) {
+        once(bsdf, part);
+        bsdf = &part;
+      } else if (is_light(part)) {
+        once(light, part);
+        light = &part;
+      } else {
+        throw misplaced(part, object, "bsdf, luminaire (or emitter)");
+      }
+    }
+    SurfaceIds ids;
+    ids.material = std::int32_t(materials_.size());
+    materials_.push_back(bsdf ? make_bsdf(*bsdf, unread_) : Bsdf{Diffuse{}});
+    std::optional<Colorf> radiance;
+    if (light) {
+      radiance = area_light_radiance(*light, unread_);
+      ids.light = lights_.count();
+    }
+    add_shape_geometry(object, description_.directory, ids, radiance, geometry_, lights_, unread_, warnings_);
+  }
+
+  static void once(bool is_there, const Object& object) {
+    if (is_there) throw InputError(object.location, fmt::format("a second <{}>; there can be only one here", object.family));
+  }
+
+  static InputError misplaced(const Object& part, const Object& parent, std::string_view expected) {
+    return {part.location, fmt::format("<{}> has no place inside <{}>", part.family, parent.family),
+            fmt::format("expected: {}", expected)};
+  }
+
+  std::vector<std::string> warnings() const {
+    std::vector<std::string> all = warnings_;
+    for (const UnreadKey& key : unread_) all.push_back(key.message);
+    return all;
+  }
+
+  const SceneDesc& description_;
+  std::optional<Camera> camera_;
+  std::optional<PixelFilter> filter_;
+  std::optional<Object> integrator_;
+  bool has_sampler_ = false;
+  SamplerKind sampler_ = SamplerKind::independent;
+  int samples_per_pixel_ = 16;
+  Geometry geometry_;
+  std::vector<Bsdf> materials_;
+  Lights lights_;
+  std::vector<UnreadKey> unread_;
+  std::vector<std::string> warnings_;
+  double seconds_read_ = 0;
+};
+
+}  // namespace
+
+LoadedScene load_scene(const SceneDesc& description, int threads) { return Loader(description).load(threads); }
+
+}  // namespace etendue

@@ -1,0 +1,26 @@
+// SceneDesc -> Scene, and what the file asks for beside the scene itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scenefile/scene_desc.h"
+
+namespace etendue {
+
+/// A scene ready to render, with the parts of the file that the command line may override.
+struct LoadedScene {
+  Scene scene;
+  Object integrator;  ///< Unread until the render chooses; type empty where the file has none.
+  int samples_per_pixel = 16;
+  std::vector<std::string> warnings;  ///< Keys that nobody read, triangles without area ...
+  double seconds_read = 0;   ///< Reading and transforming shapes.
+  double seconds_build = 0;  ///< Ray casting's tree and the lights' tables.
+};
+
+/// Reads the shapes, makes materials and lights, builds the ray caster with `threads` (0: all). Throws InputError for
+/// anything missing, repeated, unknown or degenerate: the message names the object and its place.
+LoadedScene load_scene(const SceneDesc& description, int threads = 0);
+
+}  // namespace etendue

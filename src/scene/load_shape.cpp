@@ -1,0 +1,149 @@
+#include "scene/load_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/obj_reader.h"
+#include "geometry/shapes.h"
+
+namespace etendue {
+
+namespace {
+
+using Type = Parameter::Type;
+
+const std::vector<std::string> surface_children{"bsdf", "luminaire", "emitter"};
+const Parameter to_world{"toWorld", Type::transform, "", "", "World from object; identity unless given"};
+
+const Plugin obj_plugin{
+    "shape",
+    "obj",
+    "A triangle mesh from a Wavefront OBJ file; written as <mesh type=\"obj\"> or <shape type=\"obj\">.",
+    {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
+    surface_children};
+const Plugin sphere_plugin{"shape",
+                           "sphere",
+                           "A sphere, exact.",
+                           {{"center", Type::point, "0 0 0", "m", "Centre"},
+                            {"radius", Type::real, "1", "m", "Radius"},
+                            to_world},
+                           surface_children};
+const Plugin rectangle_plugin{"shape",
+                              "rectangle",
+                              "The square [-1, 1] x [-1, 1] at z = 0, facing +z, under toWorld.",
+                              {to_world},
+                              surface_children};
+const Plugin area_plugin{"light",
+                         "area",
+                         "The shape shines from its front side, alike in all directions.",
+                         {{"radiance", Type::color, "1", "W/(m^2 sr)", "Emitted radiance"}},
+                         {}};
+
+Transform world_from_object(const Parameters& parameters) {
+  if (!parameters.has("toWorld")) return {};
+  const Transform transform = parameters.transform("toWorld");
+  if (!is_invertible(transform))
+    throw InputError(parameters.location("toWorld"), "this transform is singular: it flattens the shape",
+                     "check for a scale of 0 and for entries that are not finite");
+  return transform;
+}
+
+std::string label(const Object& object, const std::string& fallback) {
+  return object.name.empty() ? fallback : object.name;
+}
+
+/// The object's file, found beside the scene.
+std::filesystem::path existing_file(const Parameters& parameters, const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / parameters.text("filename");
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    throw InputError(parameters.location("filename"), fmt::format("'{}' is not there", parameters.text("filename")),
+                     fmt::format("looked for {}; paths are relative to the scene file", file.string()));
+  return file;
+}
+
+[[noreturn]] void throw_no_area(const Object& object, const std::string& name) {
+  throw InputError(object.location, fmt::format("the light on '{}' has no area, so it cannot shine", name),
+                   "give its mesh a triangle whose corners do not lie on one line");
+}
+
+Sphere make_sphere(const Parameters& parameters) {
+  const Transform transform = world_from_object(parameters);
+  const double radius = parameters.real("radius");
+  if (!(radius > 0))
+    throw InputError(parameters.location("radius"), fmt::format("'radius' is {}; it must be positive", radius));
+  // A sphere stays one only under a transform that scales all directions alike.
+  const double along_x = length(transform_vector(transform, {1, 0, 0}));
+  const double along_y = length(transform_vector(transform, {0, 1, 0}));
+  const double along_z = length(transform_vector(transform, {0, 0, 1}));
+  if (std::max({along_x, along_y, along_z}) > 1.0001 * std::min({along_x, along_y, along_z}))
+    throw InputError(parameters.location("toWorld"),
+                     fmt::format("this transform makes an ellipsoid (it scales the axes by {:.4g}, {:.4g}, {:.4g})",
+                                 along_x, along_y, along_z),
+                     "scale all axes alike, or use a mesh");
+  const Vec3<double> center = transform_point(transform, parameters.point("center"));
+  return {{float(center.x), float(center.y), float(center.z)}, float(radius * along_x)};
+}
+
+}  // namespace
+
+bool is_shape(const Object& object) { return object.family == "mesh" || object.family == "shape"; }
+bool is_bsdf(const Object& object) { return object.family == "bsdf" || object.family == "brdf"; }
+bool is_light(const Object& object) { return object.family == "luminaire" || object.family == "emitter"; }
+
+const std::vector<Plugin>& shape_plugins() {
+  static const std::vector<Plugin> plugins{obj_plugin, sphere_plugin, rectangle_plugin};
+  return plugins;
+}
+
+const std::vector<Plugin>& light_plugins() {
+  static const std::vector<Plugin> plugins{area_plugin};
+  return plugins;
+}
+
+Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& unread) {
+  if (description.type != area_plugin.name) throw unknown_plugin(description, light_plugins());
+  return nonnegative_color(Parameters(description, area_plugin, unread), "radiance");
+}
+
+void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
+                        const std::optional<Colorf>& radiance, Geometry& geometry, Lights& lights,
+                        std::vector<UnreadKey>& unread, std::vector<std::string>& warnings) {
+  const std::string numbered = fmt::format("{} {}", object.type, geometry.count() + 1);
+  if (object.type == obj_plugin.name) {
+    const Parameters parameters(object, obj_plugin, unread);
+    const std::filesystem::path file = existing_file(parameters, directory);
+    const Mesh mesh = read_obj(file, world_from_object(parameters));
+    const std::string name = label(object, file.stem().string());
+    if (mesh.dropped_triangles > 0)
+      warnings.push_back(format_message(
+          object.location, fmt::format("{} triangles of '{}' have no area and are left out", mesh.dropped_triangles, name)));
+    if (radiance && mesh.indices.empty()) throw_no_area(object, name);
+    const std::int32_t id = geometry.add_mesh(mesh, ids);
+    if (radiance) lights.add(*radiance, name, LightKind::mesh, lights.meshes.add(geometry, id));
+  } else if (object.type == sphere_plugin.name) {
+    const Parameters parameters(object, sphere_plugin, unread);
+    const Sphere sphere = make_sphere(parameters);
+    geometry.add_sphere(sphere, ids);
+    if (radiance) lights.add(*radiance, label(object, numbered), LightKind::sphere, lights.spheres.add(sphere));
+  } else if (object.type == rectangle_plugin.name) {
+    const Parameters parameters(object, rectangle_plugin, unread);
+    const Transform transform = world_from_object(parameters);
+    const Mesh mesh = make_rectangle(transform);
+    geometry.add_mesh(mesh, ids);
+    if (radiance) {
+      const Vec3f &corner = mesh.positions[0], along_x = mesh.positions[1] - corner, along_y = mesh.positions[3] - corner;
+      // The front stays in front under a mirroring transform, as for the mesh.
+      const bool is_mirrored = determinant(transform) < 0;
+      const std::int32_t row =
+          lights.rectangles.add(corner, is_mirrored ? along_y : along_x, is_mirrored ? along_x : along_y);
+      lights.add(*radiance, label(object, numbered), LightKind::rectangle, row);
+    }
+  } else {
+    throw unknown_plugin(object, shape_plugins());
+  }
+}
+
+}  // namespace etendue

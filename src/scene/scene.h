@@ -1,0 +1,27 @@
+// The immutable whole that is rendered: tables and indices.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bsdf/bsdf.h"
+#include "film/filter.h"
+#include "geometry/camera.h"
+#include "geometry/geometry.h"
+#include "geometry/raycast.h"
+#include "light/light.h"
+#include "sampler/sampler.h"
+
+namespace etendue {
+
+struct Scene {
+  Camera camera;
+  PixelFilter filter;
+  Geometry geometry;
+  RayCaster rays;  ///< Over `geometry`.
+  std::vector<Bsdf> materials;
+  Lights lights;
+  SamplerKind sampler;
+};
+
+}  // namespace etendue

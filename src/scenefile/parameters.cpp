@@ -1,0 +1,213 @@
+#include "scenefile/parameters.h"
+
+#include "scenefile/value_text.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace etendue {
+namespace {
+
+using Type = Parameter::Type;
+
+/// What a person reads, and the tag to write.
+struct TypeNames {
+  std::string_view phrase, tag;
+};
+
+TypeNames names_of(Type type) {
+  switch (type) {
+    case Type::boolean:
+      return {"true or false", "boolean"};
+    case Type::integer:
+      return {"an integer", "integer"};
+    case Type::real:
+      return {"a number", "float"};
+    case Type::text:
+      return {"text", "string"};
+    case Type::color:
+      return {"a colour", "color"};
+    case Type::point:
+      return {"a point", "point"};
+    case Type::vector:
+      return {"a vector", "vector"};
+    case Type::transform:
+      return {"a transform", "transform"};
+  }
+  throw std::logic_error("a parameter of no type");
+}
+
+std::string label(const Object& object) {
+  return object.type.empty() ? object.family : fmt::format("{} '{}'", object.family, object.type);
+}
+
+std::string element_to_write(const Parameter& parameter) {
+  return fmt::format("write <{} name=\"{}\" {}/>", names_of(parameter.type).tag, parameter.name,
+                     parameter.type == Type::transform ? "..." : "value=\"...\"");
+}
+
+Property::Value parse_default(const Parameter& parameter) {
+  const std::string& text = parameter.default_value;
+  try {
+    switch (parameter.type) {
+      case Type::boolean:
+        return parse_boolean(text, {});
+      case Type::integer:
+        return parse_integer(text, {});
+      case Type::real:
+        return parse_real(text, {});
+      case Type::text:
+        return text;
+      case Type::color:
+        return parse_color(text, {});
+      case Type::transform:
+        return text == "identity" ? Transform{} : parse_matrix(text, {});
+      case Type::point:
+      case Type::vector: {
+        const std::vector<double> numbers = parse_reals(text, {}, {3});
+        return Vec3<double>{numbers[0], numbers[1], numbers[2]};
+      }
+    }
+  } catch (const InputError& error) {
+    throw std::logic_error(fmt::format("the default of '{}': {}", parameter.name, error.what()));
+  }
+  throw std::logic_error("a parameter of no type");
+}
+
+/// The number of a <float> or an <integer>.
+const double* real_of(const Property::Value& value, double& storage) {
+  if (const int* integer = std::get_if<int>(&value))
+    storage = *integer;
+  else if (const double* real = std::get_if<double>(&value))
+    storage = *real;
+  else
+    return nullptr;
+  return &storage;
+}
+
+/// The stated value as the type the plugin asks for.
+Property::Value convert(const Property& property, const Parameter& parameter, const Object& object) {
+  const Property::Value& value = property.value;
+  double number = 0;
+  switch (parameter.type) {
+    case Type::boolean:
+      if (std::holds_alternative<bool>(value)) return value;
+      break;
+    case Type::integer:
+      if (std::holds_alternative<int>(value)) return value;
+      break;
+    case Type::real:
+      if (real_of(value, number)) return number;
+      break;
+    case Type::text:
+      if (std::holds_alternative<std::string>(value)) return value;
+      break;
+    case Type::color:
+      if (std::holds_alternative<Colorf>(value)) return value;
+      if (real_of(value, number)) {
+        const auto grey = static_cast<float>(number);
+        if (!std::isfinite(grey))
+          throw InputError(property.value_location, "a colour channel is out of range for a 32-bit float");
+        return Colorf{grey, grey, grey};
+      }
+      break;
+    case Type::point:
+    case Type::vector:
+      if (std::holds_alternative<Vec3<double>>(value)) return value;
+      if (std::holds_alternative<Vec2<double>>(value))
+        throw InputError(property.value_location,
+                         fmt::format("'{}' of {} needs 3 numbers, found 2", property.name, label(object)));
+      break;
+    case Type::transform:
+      if (std::holds_alternative<Transform>(value)) return value;
+      break;
+  }
+  throw InputError(property.value_location,
+                   fmt::format("'{}' of {} must be {}, not a <{}>", property.name, label(object),
+                               names_of(parameter.type).phrase, property.tag),
+                   element_to_write(parameter));
+}
+
+template <class T>
+std::vector<std::string> names_of(const std::vector<T>& named) {
+  std::vector<std::string> names;
+  for (const T& item : named) names.push_back(item.name);
+  return names;
+}
+
+}  // namespace
+
+Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<UnreadKey>& unread)
+    : object_(&object) {
+  for (const Property& property : object.properties) {
+    const auto parameter =
+        std::find_if(plugin.parameters.begin(), plugin.parameters.end(),
+                     [&](const Parameter& candidate) { return candidate.name == property.name; });
+    if (parameter == plugin.parameters.end()) {
+      unread.push_back({format_message(property.name_location,
+                                       fmt::format("unknown key '{}' of {}", property.name, label(object)),
+                                       known_names(property.name, names_of(plugin.parameters)))});
+      continue;
+    }
+    if (is_stated(property.name))
+      throw InputError(property.name_location,
+                       fmt::format("'{}' of {} is stated twice", property.name, label(object)));
+    entries_.push_back({&*parameter, convert(property, *parameter, object), &property});
+  }
+  for (const Parameter& parameter : plugin.parameters) {
+    if (is_stated(parameter.name)) continue;
+    if (parameter.is_required)
+      throw InputError(object.location,
+                       fmt::format("{} lacks '{}': {}", label(object), parameter.name, parameter.meaning),
+                       element_to_write(parameter));
+    if (!parameter.default_value.empty()) entries_.push_back({&parameter, parse_default(parameter), nullptr});
+  }
+}
+
+const Parameters::Entry* Parameters::find(std::string_view name) const {
+  for (const Entry& entry : entries_)
+    if (entry.parameter->name == name) return &entry;
+  return nullptr;
+}
+
+const Property::Value& Parameters::value(std::string_view name) const {
+  if (const Entry* entry = find(name)) return entry->value;
+  throw std::logic_error(fmt::format("{} has no value '{}'", label(*object_), name));
+}
+
+bool Parameters::is_stated(std::string_view name) const { return find(name) && find(name)->stated; }
+bool Parameters::has(std::string_view name) const { return find(name) != nullptr; }
+bool Parameters::boolean(std::string_view name) const { return std::get<bool>(value(name)); }
+int Parameters::integer(std::string_view name) const { return std::get<int>(value(name)); }
+double Parameters::real(std::string_view name) const { return std::get<double>(value(name)); }
+std::string Parameters::text(std::string_view name) const { return std::get<std::string>(value(name)); }
+Colorf Parameters::color(std::string_view name) const { return std::get<Colorf>(value(name)); }
+Vec3<double> Parameters::point(std::string_view name) const { return std::get<Vec3<double>>(value(name)); }
+Vec3<double> Parameters::vector(std::string_view name) const { return std::get<Vec3<double>>(value(name)); }
+Transform Parameters::transform(std::string_view name) const { return std::get<Transform>(value(name)); }
+
+Location Parameters::location(std::string_view name) const {
+  return is_stated(name) ? find(name)->stated->value_location : object_->location;
+}
+
+Colorf nonnegative_color(const Parameters& parameters, std::string_view name) {
+  const Colorf color = parameters.color(name);
+  for (const float channel : {color.r, color.g, color.b})
+    if (!(channel >= 0 && std::isfinite(channel)))
+      throw InputError(parameters.location(name),
+                       fmt::format("'{}' of {} has a channel of {}; it must be finite and not negative", name,
+                                   label(parameters.object()), channel));
+  return color;
+}
+
+InputError unknown_plugin(const Object& object, const std::vector<Plugin>& known) {
+  return {object.type_location, fmt::format("unknown {} '{}'", object.family, object.type),
+          known_names(object.type, names_of(known))};
+}
+
+InputError unknown_plugin(std::string_view family, std::string_view name, const std::vector<Plugin>& known) {
+  return {Location{}, fmt::format("unknown {} '{}'", family, name), known_names(name, names_of(known))};
+}
+
+}  // namespace etendue

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Sets up, builds and runs the tests; the summary of ctest closes the run.
+set -euo pipefail
+
+usage() {
+  cat <<'END'
+usage: ./test.sh [--release | --asan | --all] [-- CTEST_OPTION...]
+
+  (no option)  every test, optimised; the unit and errors tests once more under ASan and UBSan
+  --release    every test, optimised; nothing else
+  --asan       every test under AddressSanitizer and UndefinedBehaviorSanitizer; nothing else
+  --all        every test, both ways
+
+What follows -- goes to ctest: ./test.sh --release -- -R Sphere
+Installs the Debian packages it needs where they are missing (scripts/setup.sh). Builds in build/release and
+build/asan with CMAKE_BUILD_PARALLEL_LEVEL jobs (default: one a core). Tests named asan.* are the sanitized ones.
+Ends with 0 where every test passed.
+END
+}
+
+every_kind="unit;statistical;image;errors;structure"
+release_kinds=$every_kind
+asan_kinds="unit;errors"
+while [ $# -gt 0 ]; do
+  case $1 in
+    --release) asan_kinds="" ;;
+    --asan) release_kinds="" asan_kinds=$every_kind ;;
+    --all) asan_kinds=$every_kind ;;
+    -h | --help) usage; exit 0 ;;
+    --) shift; break ;;
+    *) echo "test.sh: unknown option '$1'" >&2; usage >&2; exit 2 ;;
+  esac
+  shift
+done
+
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
+scripts/setup.sh build
+jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
+
+# build PRESET KINDS: builds it with these kinds of tests.
+build() {
+  printf '\n== %s: build\n' "$1"
+  cmake --preset "$1" -DETENDUE_TEST_KINDS="$2"
+  cmake --build --preset "$1" --parallel "$jobs"
+}
+
+[ -z "$release_kinds" ] || build release "$release_kinds"
+[ -z "$asan_kinds" ] || build asan "$asan_kinds"
+
+# One list of tests over the builds, so that one summary speaks for all.
+mkdir -p build/check
+{
+  [ -z "$release_kinds" ] || echo 'subdirs([==['"$PWD"'/build/release]==])'
+  [ -z "$asan_kinds" ] || echo 'subdirs([==['"$PWD"'/build/asan]==])'
+} >build/check/CTestTestfile.cmake
+printf '\n== test\n'
+exec ctest --test-dir build/check --output-on-failure --no-tests=error --parallel "$jobs" "$@"

@@ -1,0 +1,269 @@
+#include "base/error.h"
+#include "film/image_file.h"
+
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <limits>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace etendue {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+fs::path test_data() {
+  const char* given = std::getenv("ETENDUE_TEST_DATA");
+  return given ? fs::path(given) : fs::path(ETENDUE_SOURCE_DIR) / "../shared/data";
+}
+
+/// The message of the InputError that `run` throws.
+template <class Run>
+std::string error_of(Run&& run) {
+  try {
+    run();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class ExrFile : public testing::Test {
+ protected:
+  ExrFile() { fs::create_directories(folder); }
+  ~ExrFile() override { fs::remove_all(folder); }
+  void write_bytes(const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+  std::string read_bytes() const {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::size_t files_in_folder() const {
+    return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+
+  const fs::path folder = fs::temp_directory_path() / fmt::format("etendue-exr-test-{}", getpid());
+  const fs::path file = folder / "image.exr";
+};
+
+Image small_image() {
+  constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+  return {3,
+          2,
+          {{"R", {0, 1, 2, 3, 4, 5}},
+           {"G", {0.1f, -1, 1e-40f, 3e38f, infinity, nan}},
+           {"B", {1, 1, 1, 1, 1, 1}},
+           {"stderr.R", {-0.0f, 1e-10f, 0, 0, 0, 0}},
+           {"light.a name longer than thirty-one bytes.R", {6, 5, 4, 3, 2, 1}}},
+          {{"seed", "7"}, {"scene", "caf\xc3\xa9.xml"}, {"comments", ""}}};
+}
+
+Image constant_image(int width, int height) {
+  return {width, height, {{"R", std::vector<float>(std::size_t(width) * std::size_t(height), 0.5f)}}, {}};
+}
+
+TEST_F(ExrFile, KeepsEveryBitEveryNameAndTheMetadata) {
+  const Image written = small_image();
+  write_exr(file, written);
+  const Image image = read_exr(file);
+  EXPECT_EQ(image.width, 3);
+  EXPECT_EQ(image.height, 2);
+  ASSERT_EQ(image.channels.size(), written.channels.size());
+  for (const Channel& channel : written.channels) {
+    const Channel* found = image.find(channel.name);
+    ASSERT_NE(found, nullptr) << channel.name;
+    ASSERT_EQ(found->values.size(), channel.values.size());
+    EXPECT_EQ(std::memcmp(found->values.data(), channel.values.data(), 6 * sizeof(float)), 0) << channel.name;
+  }
+  EXPECT_THAT(image.metadata, testing::UnorderedElementsAreArray(written.metadata));
+  EXPECT_EQ(image.find("r"), nullptr);
+  EXPECT_EQ(files_in_folder(), 1u) << "a temporary file was left";
+}
+
+TEST_F(ExrFile, KeepsALargeImageOfManyChunks) {
+  Image written = constant_image(301, 157);
+  for (std::size_t i = 0; i < written.channels[0].values.size(); ++i)
+    written.channels[0].values[i] = float(i * i);
+  write_exr(file, written);
+  EXPECT_EQ(read_exr(file).channels[0].values, written.channels[0].values);
+}
+
+TEST_F(ExrFile, ReadsTheMostCompressibleImage) {  // The guards must not refuse what a small file truly holds.
+  const Image written = constant_image(4096, 1024);
+  write_exr(file, written);
+  EXPECT_LT(fs::file_size(file), 64 * 1024u);
+  EXPECT_EQ(read_exr(file).channels[0].values, written.channels[0].values);
+}
+
+TEST_F(ExrFile, ReplacesAnOlderFile) {
+  write_bytes("old");
+  write_exr(file, small_image());
+  EXPECT_EQ(read_exr(file).width, 3);
+}
+
+TEST_F(ExrFile, RefusesAnImageThatIsNotOne) {
+  Image image = small_image();
+  image.channels[1].values.pop_back();
+  EXPECT_THAT(error_of([&] { write_exr(file, image); }),
+              HasSubstr("channel G has 5 values, the image 3 x 2"));
+  image = small_image();
+  image.channels[1].name = "R";
+  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("two channels are named 'R'"));
+  image.channels[1].name = "";
+  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("EXR allows 1 to 255"));
+  image = small_image();
+  image.metadata.emplace_back("dataWindow", "x");
+  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("EXR itself uses that name"));
+  image.metadata.back().first = "seed";
+  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("two metadata fields are named 'seed'"));
+  EXPECT_THAT(error_of([&] { write_exr(file, Image{}); }), HasSubstr("0 x 0"));
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(ExrFile, AWriteThatFailsNamesTheReasonAndLeavesTheOldFile) {
+  EXPECT_THAT(error_of([&] { write_exr(folder / "none" / "a.exr", small_image()); }),
+              HasSubstr("a.exr: cannot write: No such file or directory"));
+
+  write_exr(file, small_image());
+  Image large = constant_image(64, 64);
+  for (std::size_t i = 0; i < large.channels[0].values.size(); ++i)  // Hard to compress.
+    large.channels[0].values[i] = std::sin(float(i * i));
+  rlimit old_limit;
+  getrlimit(RLIMIT_FSIZE, &old_limit);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  // As on a full disk, at the start, in the middle, and in the last bytes, which OpenEXR writes in a
+  // destructor.
+  write_exr(folder / "complete.exr", large);
+  const auto complete = fs::file_size(folder / "complete.exr");
+  for (const std::uintmax_t bytes : {std::uintmax_t(100), complete / 2, complete - 1}) {
+    const rlimit limit{bytes, old_limit.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const std::string error = error_of([&] { write_exr(file, large); });
+    setrlimit(RLIMIT_FSIZE, &old_limit);
+    EXPECT_THAT(error, HasSubstr("image.exr: cannot write: ")) << bytes;
+  }
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(read_exr(file).width, 3);
+  EXPECT_EQ(files_in_folder(), 2u) << "a temporary file was left";
+}
+
+TEST_F(ExrFile, SaysWhyItCannotRead) {
+  EXPECT_THAT(error_of([&] { read_exr(folder / "none.exr"); }), HasSubstr("there is no such file"));
+  EXPECT_THAT(error_of([&] { read_exr(folder); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(error_of([&] { read_exr("/dev/zero"); }), HasSubstr("not a regular file"));
+  write_bytes("");
+  EXPECT_THAT(error_of([&] { read_exr(file); }),
+              HasSubstr("image.exr: cannot read this EXR image: it ends too early"));
+  write_bytes("\x89PNG\r\n\x1a\n and so on");
+  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("it is not an EXR file"));
+}
+
+TEST_F(ExrFile, RefusesDeepMultiPartAndOversizedFiles) {
+  write_exr(file, small_image());
+  const std::string good = read_bytes();
+  std::string bad = good;
+  bad[5] |= 0x08;
+  write_bytes(bad);
+  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("deep images are not supported"));
+  bad = good;
+  bad[5] |= 0x10;
+  write_bytes(bad);
+  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("multi-part files are not supported"));
+  // name, type, size of the box, then min x, min y, max x, max y.
+  const std::size_t window = good.find("dataWindow") + sizeof("dataWindow") + sizeof("box2i") + 4;
+  bad = good;
+  bad[window + 10] = 0x7f;
+  write_bytes(bad);
+  EXPECT_THAT(error_of([&] { read_exr(file); }),
+              HasSubstr("its header promises 8323075 x 2 pixels of 5 channels"));
+  bad = good;
+  bad[window + 14] = 0x7f;
+  write_bytes(bad);
+  EXPECT_THAT(error_of([&] { read_exr(file); }),
+              HasSubstr("its header promises 3 x 8323074 pixels of 5 channels"));
+  bad = good;
+  bad[good.find("seed") + sizeof("seed") + sizeof("string") + 3] = 0x7f;
+  write_bytes(bad);
+  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("its attribute 'seed' claims 2130706433 bytes"));
+  bad[good.find("seed")] = '\xe9';
+  write_bytes(bad);
+  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("its attribute '?eed' claims 2130706433 bytes"));
+}
+
+TEST_F(ExrFile, EveryPrefixOfAFileIsAnError) {
+  write_exr(file, small_image());
+  const std::string good = read_bytes();
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    write_bytes(good.substr(0, size));
+    EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("image.exr: cannot read this EXR image: "))
+        << size;
+  }
+}
+
+TEST_F(ExrFile,
+       NoChangedByteCrashes) {  // An image or an error; either is right, the test is that we come back.
+  write_exr(file, small_image());
+  const std::string good = read_bytes();
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    for (const int change : {0x01, 0x80, 0xff}) {
+      std::string bad = good;
+      bad[i] = char(bad[i] ^ change);
+      write_bytes(bad);
+      error_of([&] { read_exr(file); });
+    }
+  }
+}
+
+TEST_F(ExrFile, BadFilesGiveAnErrorOrAnImage) {
+  const fs::path bad = test_data() / "badinput/exr";
+  if (!fs::exists(bad)) GTEST_SKIP() << "no " << bad;
+  int errors = 0, images = 0;
+  for (const auto& entry : fs::directory_iterator(bad)) {
+    try {
+      const Image image = read_exr(entry.path());
+      ++images;
+      for (const Channel& channel : image.channels)
+        EXPECT_EQ(channel.values.size(), std::size_t(image.width) * std::size_t(image.height))
+            << entry.path();
+    } catch (const InputError& error) {
+      ++errors;
+      EXPECT_THAT(error.what(), HasSubstr(entry.path().string() + ": cannot read this EXR image: "));
+    }
+  }
+  EXPECT_GT(errors, 0);
+  EXPECT_GT(images, 0);
+}
+
+TEST_F(ExrFile, ValidFilesOfEveryCompressionAreRead) {
+  const fs::path valid = test_data() / "badinput/exr-valid";
+  if (!fs::exists(valid)) GTEST_SKIP() << "no " << valid;
+  for (const auto& entry : fs::directory_iterator(valid)) {
+    EXPECT_NO_THROW({
+      const Image image = read_exr(entry.path());
+      EXPECT_FALSE(image.channels.empty());
+      EXPECT_GT(image.channels.at(0).values.size(), 0u);
+    }) << entry.path();
+  }
+}
+
+TEST_F(ExrFile, LosslessCompressionsAgree) {
+  const fs::path valid = test_data() / "badinput/exr-valid";
+  if (!fs::exists(valid)) GTEST_SKIP() << "no " << valid;
+  for (const auto& [one, other] :
+       {std::pair("f16_uncompressed.exr", "f16_piz.exr"), std::pair("f16_uncompressed.exr", "f16_rle.exr"),
+        std::pair("f32_zip.exr", "f32_piz.exr")}) {
+    const Image image = read_exr(valid / one), same = read_exr(valid / other);
+    for (const Channel& channel : image.channels) {
+      ASSERT_NE(same.find(channel.name), nullptr) << other;
+      EXPECT_TRUE(same.find(channel.name)->values == channel.values) << other << ' ' << channel.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace etendue
