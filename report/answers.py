@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from formulas import formula
 from measure import INTEGRATORS
-from variance import highlight_width_px
+from variance import half_maximum_angle_deg, highlight_width_px
 
 
 def sig(value, digits=3):
@@ -94,9 +94,12 @@ def materials(scene, regions, layout):
     for plate in layout["plates"]:
         region = next(r for r in regions if is_place(r, plate["name"], 1))
         rect = region.info["rect"]
+        # the rectangle is as wide as the light's rim and the lobe's half-maximum angle together
+        lobe_deg, light_deg = math.degrees(math.acos(0.5 ** (1 / plate["n"]))), region.info["half_angle_deg"]
+        half_deg = half_maximum_angle_deg(plate["n"], light_deg)
         rows.append({"name": plate["name"], "n": plate["n"],
-                     "half_lobe_deg": math.degrees(math.acos(0.5 ** (1 / plate["n"]))),
-                     "expected_px": round((rect[2] - rect[0]) * width),
+                     "half_lobe_deg": lobe_deg,
+                     "expected_px": round((rect[2] - rect[0]) * width * half_deg / (light_deg + lobe_deg)),
                      "measured_px": highlight_width_px(scene, rect)})
     measured = [r["measured_px"] for r in rows]
     grows = all(a < b for a, b in zip(measured, measured[1:]))
@@ -191,14 +194,14 @@ def best_of_both(scene, regions):
     text += (f"<p>The average also costs both methods' samples: {sig(m['average'].seconds, 2)} s against "
              f"{sig(m['light'].seconds, 2)} s (<code>light</code>) and {sig(m['direct'].seconds, 2)} s "
              f"(<code>direct</code>) here. With half of the samples from each, for about the cost of one image,</p>"
-             f"<p class=math>{formula('average_cost')}</p><p>it is the plain mean of the two variances and so <em>never"
+             f"<p class=math>{formula('average_cost')}</p><p>it is the plain mean of the two variances (as long as variance falls with 1/<i>N</i>) and so <em>never"
              f"</em> better than the better image. It only avoids having the worst place of one image alone: it has a "
              f"smaller version of both artefacts ({place(light_worst)}: {sig(light_worst.relative_variance['average'])}; "
              f"{place(direct_worst)}: {sig(direct_worst.relative_variance['average'])}).</p>")
     text += (f"<p>What helps is to weight each <em>sample</em>, not each image: multiple importance sampling (Veach and "
              f"Guibas 1995), here with the balance heuristic and one sample from each method,</p><p class=math>"
              f"{formula('mis')}</p><p>where both densities are per solid angle. A sample that the other method would have "
-             f"drawn far more often gets a small weight, so the large values that make the noise cannot occur. ")
+             f"drawn far more often gets a small weight, so the rare large values that make the noise mostly vanish. ")
     if len(mis_better) == total:
         text += f"It beats the average in all {total} highlights, "
     elif mis_better:
@@ -217,7 +220,8 @@ def whole_image(methods):
     best = max(INTEGRATORS, key=lambda i: methods[i].efficiency)
     mis, average = methods["mis"], methods["average"]
     text = (f" Over the whole image, time included, the efficiency of <code>mis</code> is "
-            f"{times(mis.efficiency / average.efficiency)} that of the average")
+            f"{times(mis.efficiency / average.efficiency)} that of the average, and "
+            f"{times(mis.efficiency_trimmed / average.efficiency_trimmed)} without the worst 0.1 % of pixels")
     if best == "mis":
-        return text + ", and the best of the four."
-    return text + f"; the most efficient of the four here is <code>{best}</code>."
+        return text + "; it is the best of the four."
+    return text + f"; the most efficient of the four, all pixels counted, is <code>{best}</code> here."

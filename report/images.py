@@ -8,10 +8,10 @@ import OpenImageIO as oiio
 from PIL import Image
 
 LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
-# Packing: luminance is 2^(code / 128 - 16) with a 16-bit code, its standard error 2^(code / 8 - 20) with an 8-bit code;
+# Packing: luminance is 2^(code / 64 - 16) with a 16-bit code, its standard error 2^(code / 4 - 20) with an 8-bit code;
 # code 0 is zero. viewer.js undoes it.
-VALUE_STEPS, VALUE_SHIFT = 128, 16
-ERROR_STEPS, ERROR_SHIFT = 8, 20
+VALUE_STEPS, VALUE_SHIFT = 64, 16
+ERROR_STEPS, ERROR_SHIFT = 4, 20
 
 
 def read_exr(path):
@@ -86,7 +86,7 @@ def png(image):
     return out.getvalue()
 
 
-def jpeg(pixels, quality=90):
+def jpeg(pixels, quality=80):
     out = io.BytesIO()
     Image.fromarray(pixels).save(out, "JPEG", quality=quality, subsampling=0)
     return out.getvalue()

@@ -31,7 +31,9 @@ class Renderer:
         self.etendue, self.cache = Path(etendue).resolve(), Path(cache)
         self.threads = threads or len(os.sched_getaffinity(0))
         self.cache.mkdir(parents=True, exist_ok=True)
-        self.binary = digest([self.etendue])
+        # the program and its kernels, one library for each instruction set, built beside it or installed
+        folders = (self.etendue.parent / "lib", self.etendue.parent.parent / "lib")
+        self.binary = digest([self.etendue, *sorted(f for folder in folders for f in folder.rglob("libetendue*.so"))])
         self.made = self.kept = 0
 
     def render(self, scene, integrator, spp, seed, replicates=REPLICATES):
@@ -44,14 +46,14 @@ class Renderer:
         if exr.exists() and stats.exists():
             self.kept += 1
         else:
-            subprocess.run([self.etendue, "render", scene, "-o", exr, "--stats", stats, "--quiet", *options],
-                           check=True)
+            subprocess.run([self.etendue, "render", scene, "-o", exr, "--stats", stats, "--quiet", "--strict",
+                            *options], check=True)
             self.made += 1
         return Render(json.loads(stats.read_text()), exr)
 
     def version(self):
-        said = subprocess.run([self.etendue, "--version"], capture_output=True, text=True)
-        return said.stdout.strip() if said.returncode == 0 else "unknown"
+        said = subprocess.run([self.etendue, "--version"], capture_output=True, text=True, check=True)
+        return f"Etendue {said.stdout.strip()}"
 
 
 def digest(files):
@@ -81,14 +83,14 @@ class Measured:
 
 def measure(renderer, scene, quick):
     """Equal samples: several seeds. Equal time: as many samples as fit into the time that the slowest method needs for
-    twice the samples, found from the pace of the equal-sample renders and corrected once."""
-    spp, seeds, reference_spp = (16, 3, 64) if quick else (64, 6, 512)
+    twice the samples, found from the pace of the equal-sample renders and corrected where the time is still off."""
+    spp, seeds, reference_spp = (16, 3, 64) if quick else (64, 4, 256)
     samples = {i: [renderer.render(scene, i, spp, seed) for seed in range(1, seeds + 1)] for i in INTEGRATORS}
     measured = Measured(scene, samples, {}, renderer.render(scene, "mis", reference_spp, 1000))
     target = 2 * max(measured.seconds(i) for i in INTEGRATORS)
     for i in INTEGRATORS:
         pace = measured.seconds(i) / spp
-        for _ in range(2):
+        for _ in range(3):
             wanted = max(1, round(target / pace / REPLICATES)) * REPLICATES
             measured.equal_time[i] = renderer.render(scene, i, wanted, 501)
             seconds = measured.equal_time[i].stats["seconds_render"]

@@ -41,11 +41,11 @@ def regions_plot(regions):
         axes.set_xticks(range(len(regions)), [str(r.info["light"]) for r in regions])
         for k, plate in enumerate(dict.fromkeys(r.info["plate"] for r in regions)):
             at = [j for j, r in enumerate(regions) if r.info["plate"] == plate]
-            axes.text(sum(at) / len(at), -0.17, f"{plate} plate", ha="center", va="top",
+            axes.text(sum(at) / len(at), -0.12, f"{plate} plate", ha="center", va="top",
                       transform=axes.get_xaxis_transform())
             if k:
                 axes.axvline(at[0] - 0.5, color="#999999", linewidth=0.8)
-        axes.set_xlabel("light: 1 is the smallest, 4 the largest", labelpad=22)
+        axes.set_xlabel("light: 1 is the smallest, 4 the largest", labelpad=26)
         axes.set_ylabel("relative variance of a pixel")
         axes.legend(ncols=5, loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, handletextpad=0.1,
                     columnspacing=1.0)

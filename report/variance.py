@@ -18,7 +18,7 @@ class Method:
     relative_variance_stderr: float   # from the standard errors over replicates
     error_to_reference: float         # mean squared error against the reference / (mean luminance)^2
     mean: float                       # mean luminance over all seeds
-    mean_error: float                 # its standard error
+    mean_error: float                 # its standard error: pixels are independent
 
     @property
     def efficiency(self):
@@ -62,7 +62,6 @@ def evaluate(measured):
         lum = np.stack([luminance(p[0].astype(np.float64)) for p in pixels])
         variance = lum.var(axis=0, ddof=1)
         from_stderr = np.mean([luminance(p[1].astype(np.float64)) ** 2 for p in pixels], axis=0)
-        means = lum.mean(axis=(1, 2))
         stats = renders[0].stats
         seconds = measured.seconds(i)
         methods[i] = Method(
@@ -70,7 +69,7 @@ def evaluate(measured):
             relative_variance=variance.mean() / mean_sq, relative_variance_trimmed=trimmed(variance) / mean_sq,
             relative_variance_stderr=from_stderr.mean() / mean_sq,
             error_to_reference=((lum[0] - reference) ** 2).mean() / mean_sq,
-            mean=means.mean(), mean_error=means.std(ddof=1) / np.sqrt(len(means)))
+            mean=lum.mean(), mean_error=np.sqrt(variance.mean() / lum.size))
         variances[i] = variance
         timed = measured.equal_time[i]
         rgb, stderr = (p.astype(np.float64) for p in timed.pixels())
@@ -117,11 +116,25 @@ def evaluate_regions(scene, regions):
     return found
 
 
+def half_maximum_angle_deg(n, half_angle_deg):
+    """Where a round light with that half angle, blurred by the lobe cos^n, has fallen to half of its maximum."""
+    light = np.radians(half_angle_deg)
+    step = np.linspace(-light, light, 61)
+    x, y = np.meshgrid(step, step)
+    disc = np.hypot(x, y) <= light
+    angles = np.linspace(0, light + 4 / np.sqrt(n), 400)
+    seen = np.array([np.exp(-n / 2 * ((x[disc] - a) ** 2 + y[disc] ** 2)).sum() for a in angles])
+    return np.degrees(angles[np.argmax(seen < seen[0] / 2)])
+
+
 def highlight_width_px(scene, rect):
-    """Width of a highlight at half of its maximum, along the row through the middle of its rectangle, in pixels."""
+    """Width of a highlight at half of its maximum, in pixels: of the mean of the rows in the middle third of its
+    rectangle, smoothed over a twelfth of its width against the noise of the reference."""
     h, w = scene.reference.shape
-    row = int((rect[1] + rect[3]) / 2 * h)
-    profile = scene.reference[row - 1:row + 2].mean(axis=0)
+    third = (rect[3] - rect[1]) / 3
+    rows = slice(int((rect[1] + third) * h), int(np.ceil((rect[3] - third) * h)))
+    blur = max(1, round((rect[2] - rect[0]) * w / 12))
+    profile = np.convolve(scene.reference[rows].mean(axis=0), np.full(blur, 1 / blur), "same")
     left, right = int(rect[0] * w), int(np.ceil(rect[2] * w))
     peak = left + int(np.argmax(profile[left:right]))
     half = profile[peak] / 2

@@ -9,8 +9,8 @@
 
   // --- data ------------------------------------------------------------------------------------------------------
 
-  /** Undoes pack() of images.py: luminance 2^(code/128 - 16), shares of red and green, standard error
-   *  2^(code/8 - 20). */
+  /** Undoes pack() of images.py: luminance 2^(code/64 - 16), shares of red and green, standard error
+   *  2^(code/4 - 20). */
   async function decode(uri, width, height) {
     const image = new Image();
     image.src = uri;
@@ -27,12 +27,12 @@
     for (let i = 0; i < n; ++i) {
       const code = bytes[4 * i] * 256 + bytes[4 * (i + n)];
       const errorCode = bytes[4 * (i + 4 * n)];
-      error[i] = errorCode ? 2 ** (errorCode / 8 - 20) : 0;
+      error[i] = errorCode ? 2 ** (errorCode / 4 - 20) : 0;
       if (!code) continue;
       const red = bytes[4 * (i + 2 * n)] / 255;
       const green = bytes[4 * (i + 3 * n)] / 255;
       const blue = Math.max(0, 1 - red - green);
-      const scale = 2 ** (code / 128 - 16) / (WEIGHTS[0] * red + WEIGHTS[1] * green + WEIGHTS[2] * blue);
+      const scale = 2 ** (code / 64 - 16) / (WEIGHTS[0] * red + WEIGHTS[1] * green + WEIGHTS[2] * blue);
       rgb[3 * i] = red * scale;
       rgb[3 * i + 1] = green * scale;
       rgb[3 * i + 2] = blue * scale;
@@ -176,6 +176,9 @@
     }
 
     set(change) {
+      // a comparison of a method with itself shows nothing: compare with the one that was shown before
+      if (change.method === this.state.against && change.method !== this.state.method)
+        this.state.against = this.state.method;
       Object.assign(this.state, change);
       const margin = 0.5 / this.state.zoom;
       this.state.x = Math.min(1 - margin, Math.max(margin, this.state.x));

@@ -344,12 +344,12 @@ def make_still_life():
         "Exercise 3, area sampling: a small still life under area lights with soft shadows. "
         "Written by make_scenes.py. Lengths in decimetres.", 64, camera, body))
 
-    # Places on the table and on the wall, chosen by what hides which light there.
+    # Places on the table: centre, half width, and what hides which light there.
     places = {
         "open table": ((3.0, 0.0, 2.6), 0.3, "all three lights are seen, nothing hides them"),
-        "contact shadow": ((-2.05, 0.0, 0.25), 0.12, "the table at the foot of the vase"),
-        "penumbra": ((-3.7, 0.0, 0.1), 0.2, "the table left of the vase, where a light is partly hidden"),
-        "umbra": ((0.55, 0.02, 0.62), 0.12, "the table under the rim of the bowl"),
+        "umbra": ((-4.04, 0.0, -1.37), 0.25, "the shadow of the vase left of it: the small light is hidden"),
+        "penumbra": ((-3.82, 0.0, -0.26), 0.12, "the edge of that shadow: the small light is partly hidden"),
+        "contact shadow": ((1.54, 0.0, 2.13), 0.05, "the table beneath the right egg: nearly everything is hidden"),
     }
     regions = []
     for name, (center, half, what) in places.items():
@@ -445,6 +445,7 @@ def make_plates():
         "plates": [{"name": p[0], "n": p[4], "kd": PLATE_KD, "ks": PLATE_KS} for p in PLATES],
         "lights": [{"name": f"light {i + 1}", "radius": r, "power": round(powers[i], 6)}
                    for i, r in enumerate(LIGHT_RADII)],
+        "lights_end": PLATES[0][1],  # above this fraction of the height, the lights; below, the plates
         "regions": highlight_regions()})
 
 
