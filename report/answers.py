@@ -15,9 +15,9 @@ def sig(value, digits=3):
     if abs(value) < 1e-4 or abs(value) >= 1e6:
         base, exponent = f"{value:.{digits - 1}e}".split("e")
         return f"{base} · 10<sup>{int(exponent)}</sup>".replace("-", "−")
-    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{round(value, digits - 1 - math.floor(math.log10(abs(value)))):,.{places}f}".replace(",", " ").replace(
-        "-", "−")
+    rounded = float(f"{value:.{digits - 1}e}")
+    places = max(0, digits - 1 - math.floor(math.log10(abs(rounded))))
+    return f"{rounded:,.{places}f}".replace(",", " ").replace("-", "−")
 
 
 def times(ratio):
@@ -194,8 +194,8 @@ def best_of_both(scene, regions):
     text += (f"<p>The average also costs both methods' samples: {sig(m['average'].seconds, 2)} s against "
              f"{sig(m['light'].seconds, 2)} s (<code>light</code>) and {sig(m['direct'].seconds, 2)} s "
              f"(<code>direct</code>) here. With half of the samples from each, for about the cost of one image,</p>"
-             f"<p class=math>{formula('average_cost')}</p><p>it is the plain mean of the two variances (as long as variance falls with 1/<i>N</i>) and so <em>never"
-             f"</em> better than the better image. It only avoids having the worst place of one image alone: it has a "
+             f"<p class=math>{formula('average_cost')}</p><p>it is the plain mean of the two variances (as long as variance "
+             f"falls with 1/<i>N</i>) and so <em>never</em> better than the better image. It only avoids having the worst place of one image alone: it has a "
              f"smaller version of both artefacts ({place(light_worst)}: {sig(light_worst.relative_variance['average'])}; "
              f"{place(direct_worst)}: {sig(direct_worst.relative_variance['average'])}).</p>")
     text += (f"<p>What helps is to weight each <em>sample</em>, not each image: multiple importance sampling (Veach and "

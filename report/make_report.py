@@ -101,8 +101,8 @@ def strip_words(scene, end):
     rest = {i: v[rows:].mean() for i, v in scene.variance.items()}
     efficiency = {i: 1 / (rest[i] * scene.methods[i].seconds) for i in INTEGRATORS}
     best = max(efficiency, key=efficiency.get)
-    return (f"The camera also sees the lights, above the plates, and at the rim of a small bright light a pixel is noisy with "
-            f"every method alike. That strip holds {sig(100 * share['mis'], 2)} % of the variance of <code>mis</code>, "
+    return (f"The camera also sees the lights, above the plates, and at the rim of a small bright light a pixel is "
+            f"noisy with every method alike. That strip holds {sig(100 * share['mis'], 2)} % of the variance of <code>mis</code>, "
             f"{sig(100 * share['direct'], 2)} % of that of <code>direct</code> and {sig(100 * share['light'], 2)} % of that "
             f"of <code>light</code>. Without it, <code>{best}</code> is the most efficient: the efficiencies are "
             + ", ".join(f"<code>{i}</code> {sig(efficiency[i] / efficiency['light'], 2)}" for i in INTEGRATORS)
@@ -192,7 +192,10 @@ def summary(scenes, regions):
             second = max((i for i in INTEGRATORS if i != "light"), key=lambda i: scene.methods[i].efficiency)
             return (f"<code>light</code> is the most efficient, {times(1 / ratio(scene, second))} as efficient as "
                     f"<code>{second}</code>")
-        return f"<code>{best}</code> is the most efficient, {times(ratio(scene, best))} as efficient as <code>light</code>"
+        trimmed = max(INTEGRATORS, key=lambda i: scene.methods[i].efficiency_trimmed)
+        gain = scene.methods[trimmed].efficiency_trimmed / scene.methods["light"].efficiency_trimmed
+        return (f"<code>{best}</code> is the most efficient, {times(ratio(scene, best))} as efficient as <code>light</code>"
+                f" (without the worst 0.1 % of pixels: <code>{trimmed}</code>, {times(gain)})")
 
     def ratio(scene, i):
         return scene.methods[i].efficiency / scene.methods["light"].efficiency
@@ -252,7 +255,8 @@ def main():
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), trim_blocks=True,
                                      undefined=jinja2.StrictUndefined)
     context = {
-        "css": (HERE / "style.css").read_text(), "js": (HERE / "viewer.js").read_text(), "f": formula, "sig": sig, "as_image": as_image,
+        "css": (HERE / "style.css").read_text(), "js": (HERE / "viewer.js").read_text(), "f": formula,
+        "sig": sig, "as_image": as_image,
         "summary": summary(scenes, plates), "quick": options.quick, "date": datetime.date.today().isoformat(),
         "machine": {"model": machine(), "threads": stats["threads"], "isa": stats["isa"],
                     "version": renderer.version()},
@@ -285,10 +289,10 @@ def time_words(measured, scenes, seconds):
     for name, m in measured.items():
         s = m.reference.stats
         each = ", ".join(f"<code>{i}</code> {sig(scenes[name].methods[i].seconds)} s" for i in INTEGRATORS)
-        parts.append(f"{TITLES[name][0].split(' (')[0]} ({s['width']} × {s['height']} pixels, {s['triangles']} triangles, "
-                     f"{s['lights']} lights): one image at {scenes[name].methods['light'].spp} samples a pixel takes {each}; "
-                     f"all renders of the scene for this page took {sig(seconds[name])} s, of which the reference "
-                     f"{sig(s['seconds_render'])} s.")
+        title, spp = TITLES[name][0].split(" (")[0], scenes[name].methods["light"].spp
+        parts.append(f"{title} ({s['width']} × {s['height']} pixels, {s['triangles']} triangles, {s['lights']} lights): "
+                     f"one image at {spp} samples a pixel takes {each}; all renders of the scene for this page took "
+                     f"{sig(seconds[name])} s, of which the reference {sig(s['seconds_render'])} s.")
     return "Rendering, on the machine named above. " + " ".join(parts)
 
 

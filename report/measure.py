@@ -82,19 +82,19 @@ class Measured:
 
 
 def measure(renderer, scene, quick):
-    """Equal samples: several seeds. Equal time: as many samples as fit into the time that the slowest method needs for
-    twice the samples, found from the pace of the equal-sample renders and corrected where the time is still off."""
-    spp, seeds, reference_spp = (16, 3, 64) if quick else (64, 4, 256)
+    """Equal samples: several seeds. Equal time: as many samples as fit into the time that the slowest method needs
+    for equal samples, found from the pace of the equal-sample renders and corrected where the time is still off."""
+    spp, seeds, reference_spp = (16, 3, 64) if quick else (64, 3, 256)
     samples = {i: [renderer.render(scene, i, spp, seed) for seed in range(1, seeds + 1)] for i in INTEGRATORS}
     measured = Measured(scene, samples, {}, renderer.render(scene, "mis", reference_spp, 1000))
-    target = 2 * max(measured.seconds(i) for i in INTEGRATORS)
+    target = max(measured.seconds(i) for i in INTEGRATORS)
     for i in INTEGRATORS:
         pace = measured.seconds(i) / spp
         for _ in range(3):
             wanted = max(1, round(target / pace / REPLICATES)) * REPLICATES
             measured.equal_time[i] = renderer.render(scene, i, wanted, 501)
             seconds = measured.equal_time[i].stats["seconds_render"]
-            if abs(seconds / target - 1) < 0.04:
+            if abs(seconds / target - 1) < 0.05:
                 break
             pace = seconds / wanted
     return measured

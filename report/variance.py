@@ -117,7 +117,8 @@ def evaluate_regions(scene, regions):
 
 
 def half_maximum_angle_deg(n, half_angle_deg):
-    """Where a round light with that half angle, blurred by the lobe cos^n, has fallen to half of its maximum."""
+    """Where a round light with that half angle, blurred by the lobe cos^n, has fallen to half of its maximum. The
+    lobe must not be narrower than a thirtieth of the light."""
     light = np.radians(half_angle_deg)
     step = np.linspace(-light, light, 61)
     x, y = np.meshgrid(step, step)
