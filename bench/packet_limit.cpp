@@ -47,11 +47,12 @@ struct Recording {
     const int count = block.padded_count;
     for (int i = 0; i < count; ++i)
       shadow_order.push_back(block.shadow_is_needed[i] && i < block.count ? std::int32_t(shadow_origin.x.size()) + i : -1);
-    origin.append(block.ray_origin, count);
-    direction.append(block.ray_direction, count);
-    t_near.insert(t_near.end(), block.ray_t_near.begin(), block.ray_t_near.begin() + count);
-    t_far.insert(t_far.end(), block.ray_t_far.begin(), block.ray_t_far.begin() + count);
-    is_active.insert(is_active.end(), block.ray_is_active.begin(), block.ray_is_active.begin() + count);
+    const RayColumns& rays = block.camera_ray;
+    origin.append(rays.origin, count);
+    direction.append(rays.direction, count);
+    t_near.insert(t_near.end(), rays.t_near.begin(), rays.t_near.begin() + count);
+    t_far.insert(t_far.end(), rays.t_far.begin(), rays.t_far.begin() + count);
+    is_active.insert(is_active.end(), rays.is_active.begin(), rays.is_active.begin() + count);
     shadow_origin.append(block.shadow_origin, count);
     shadow_direction.append(block.shadow_direction, count);
   }

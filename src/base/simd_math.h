@@ -1,7 +1,7 @@
 // Elementary functions over lanes, and loops over the distinct values in a packet.
 #pragma once
 
-#include "base/simd.h"
+#include "base/mask.h"
 
 namespace etendue {
 

@@ -47,8 +47,7 @@ class MeshLights {
     const auto is_smooth = mask_and(m, equal(gather(geometry.has_normals.data(), geometry_id), I(1)));
     if (any(is_smooth)) {
       const Vec3<F> ns = interpolate_normal<F>(geometry, geometry_id, triangle, barycentric, is_smooth);
-      point.ns = {select(is_smooth, ns.x, point.ng.x), select(is_smooth, ns.y, point.ng.y),
-                  select(is_smooth, ns.z, point.ng.z)};
+      point.ns = select(is_smooth, ns, point.ng);
     }
     point.pdf_area = gather(pdf_area_.data(), row);
     const F along = (to_float(triangle) + u_triangle.y) * gather(pieces_per_triangle_.data(), row);
