@@ -68,8 +68,7 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
       block.aim[i] = block.shadow_is_needed[i] ? bin : used_bins;
     }
   }
-  std::array<std::int32_t, most_bins + 2> start;
-  std::fill_n(start.begin(), used_bins + 2, 0);
+  std::array<std::int32_t, most_bins + 2> start{};
   for (int i = 0; i < block.count; ++i) ++start[std::size_t(block.aim[i]) + 1];
   for (std::int32_t bin = 0; bin < used_bins; ++bin) start[bin + 1] += start[bin];
   block.shadow_count = start[used_bins];

@@ -8,6 +8,7 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   const auto first = std::size_t(geometry.first_triangle[std::size_t(geometry_id)]);
   const auto count = std::size_t(geometry.triangles[std::size_t(geometry_id)]);
   geometry_id_.push_back(geometry_id);
+  has_normals_.push_back(geometry.has_normals[std::size_t(geometry_id)]);
   first_triangle_.push_back(std::int32_t(alias_.size()));
   triangle_count_.push_back(std::int32_t(count));
   pieces_per_triangle_.push_back(float(light_pieces) / float(count));
@@ -26,7 +27,7 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   alias_threshold_.insert(alias_threshold_.end(), table.threshold.begin(), table.threshold.end());
   alias_.insert(alias_.end(), table.alias.begin(), table.alias.end());
   pdf_area_.push_back(float(1 / total_area));
-  return std::int32_t(pdf_area_.size()) - 1;
+  return pdf_area_.size() - 1;
 }
 
 }  // namespace etendue

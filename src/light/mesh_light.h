@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/lookup_table.h"
 #include "base/simd_math.h"
 #include "base/warp.h"
 #include "geometry/geometry.h"
@@ -21,7 +22,7 @@ class MeshLights {
   LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& row, const Vec3<F>& /*reference*/,
                                 const Vec2<UInt<F>>& u, const Mask<F>& m) const {
     using I = Int<F>;
-    const I first = gather(first_triangle_.data(), row), count = gather(triangle_count_.data(), row);
+    const I first = first_triangle_.at(row), count = triangle_count_.at(row);
     const I bucket = as_int(mul_hi(u.y, as_uint(count)));
     const UInt<F> fraction = u.y * as_uint(count);
     const UInt<F> threshold = gather(alias_threshold_.data(), first + bucket);
@@ -43,14 +44,14 @@ class MeshLights {
     point.position = origin + edge_1 * barycentric.x + edge_2 * barycentric.y;
     point.ng = normalize(cross(edge_1, edge_2));
     point.ns = point.ng;
-    const I geometry_id = gather(geometry_id_.data(), row);
-    const auto is_smooth = mask_and(m, equal(gather(geometry.has_normals.data(), geometry_id), I(1)));
+    const auto is_smooth = mask_and(m, equal(has_normals_.at(row), I(1)));
     if (any(is_smooth)) {
+      const I geometry_id = geometry_id_.at(row);
       const Vec3<F> ns = interpolate_normal<F>(geometry, geometry_id, triangle, barycentric, is_smooth);
       point.ns = select(is_smooth, ns, point.ng);
     }
-    point.pdf_area = gather(pdf_area_.data(), row);
-    const F along = (to_float(triangle) + u_triangle.y) * gather(pieces_per_triangle_.data(), row);
+    point.pdf_area = pdf_area_.at(row);
+    const F along = (to_float(triangle) + u_triangle.y) * pieces_per_triangle_.at(row);
     point.piece = min_int(to_int(along), I(light_pieces - 1));
     return point;
   }
@@ -58,13 +59,13 @@ class MeshLights {
   /// 1 / total area
   template <class F>
   F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/, const Vec3<F>& /*ng*/) const {
-    return gather(pdf_area_.data(), row);
+    return pdf_area_.at(row);
   }
 
  private:
   // Per light.
-  std::vector<std::int32_t> geometry_id_, first_triangle_, triangle_count_;
-  std::vector<float> pdf_area_, pieces_per_triangle_;
+  LookupTable<std::int32_t> geometry_id_, has_normals_, first_triangle_, triangle_count_;
+  LookupTable<float> pdf_area_, pieces_per_triangle_;
   // Per triangle of all lights: the alias table, and a corner and two edges.
   std::vector<std::uint32_t> alias_threshold_;
   std::vector<std::int32_t> alias_;

@@ -1,7 +1,7 @@
 // Owen-scrambled Sobol points in two dimensions, by hashing: Burley 2020, "Practical hash-based Owen scrambling".
 #pragma once
 
-#include "base/simd.h"
+#include "base/bits.h"
 #include "base/vec.h"
 
 namespace etendue {
