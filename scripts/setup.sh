@@ -8,7 +8,8 @@ usage: scripts/setup.sh [GROUP...]
 
 Installs the packages of the groups named (default: build) in scripts/debian-packages.txt that are not
 installed yet, as root or through sudo. Says nothing where nothing is missing. Where packages cannot be
-installed (no apt-get, or neither root nor sudo), names what is missing and goes on if CMake finds all it needs.
+installed (no apt-get, neither root nor sudo, no network) it goes on if CMake finds all it needs, else stops and
+names what to install.
 
 groups: build    compilers, libraries, test framework
         report   what demo.sh's page needs
@@ -40,18 +41,23 @@ missing() {
   done
 }
 
-# The last resort where nothing can be installed: other names or places may hold all that is needed.
-go_on_if_cmake_is_content() {
-  if command -v cmake >/dev/null && (cd "$root" && cmake --preset release) >"$log" 2>&1 </dev/null; then
-    say "CMake finds all it needs; going on without them."
+# go_on_without WHY PACKAGE...: the last resort where nothing can be installed, as all that is needed may be
+# there under other names or in other places. Fails, naming the packages, where CMake does not find it.
+go_on_without() {
+  local why=$1 package
+  shift
+  if command -v cmake >/dev/null && (cd "$root" && cmake --preset release) >/dev/null 2>"$log" </dev/null; then
+    say "$why; CMake finds all it needs, so going on (all parts: scripts/debian-packages.txt)"
     return 0
   fi
-  if [ -s "$log" ]; then
-    sed -n '/^CMake Error/,$p' "$log" | head -n 20 >&2
-  else
-    echo "setup: cmake is not installed." >&2
-  fi
-  echo "setup: please install what is missing (docs/dependencies.md says what each part is), then run this again." >&2
+  {
+    say "$why, and CMake does not find all it needs."
+    [ ! -s "$log" ] || sed -n '/^CMake Error/,$p' "$log" | head -n 20
+    say "please install these (Debian 12 names; docs/dependencies.md tells more), then run this again:"
+    for package in "$@"; do
+      sed -n "s/^\($package  *#.*\)/  \1/p" "$list"
+    done
+  } >&2
   return 1
 }
 
@@ -71,14 +77,13 @@ install_missing() {
 
   if ! apt_knows "$@"; then
     say "fetching the package lists (apt-get update)"
-    "${apt[@]}" update >"$log" 2>&1 </dev/null || { cat "$log" >&2; return 1; }
+    "${apt[@]}" update >"$log" 2>&1 </dev/null || { tail -n 20 "$log" >&2; return 1; }
   fi
   say "installing $# Debian packages: $*"
   if ! "${install[@]}" >"$log" 2>&1 </dev/null; then
     say "that failed; once more with fresh package lists"
     if ! { "${apt[@]}" update && "${install[@]}"; } >"$log" 2>&1 </dev/null; then
-      tail -n 30 "$log" >&2
-      echo "setup: apt-get could not install the packages; its last lines are above." >&2
+      tail -n 20 "$log" >&2
       return 1
     fi
   fi
@@ -96,18 +101,16 @@ main() {
   mapfile -t wanted < <(printf '%s' "$names" | sort -u)
 
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-    say "this is not a Debian system; what is needed, by its Debian 12 names: ${wanted[*]}"
-    go_on_if_cmake_is_content
+    go_on_without "this is not a Debian system" "${wanted[@]}"
     return
   fi
   mapfile -t need < <(missing "${wanted[@]}")
   [ ${#need[@]} -gt 0 ] || return 0
   if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
-    say "neither root nor sudo; as root, please run: apt-get install --no-install-recommends ${need[*]}"
-    go_on_if_cmake_is_content
+    go_on_without "neither root nor sudo" "${need[@]}"
     return
   fi
-  install_missing "${need[@]}"
+  install_missing "${need[@]}" || go_on_without "packages could not be installed" "${need[@]}"
 }
 
 main "$@"

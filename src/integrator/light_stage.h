@@ -25,16 +25,14 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
 
     const Frame<F> frame(surface.ns);
     const Vec3<F> wo_local = frame.local_from_world(surface.wo), wi_local = frame.local_from_world(sample.wi);
-    const Mask<F> is_lit = mask_and(surface.is_there, sample.pdf_solid_angle > F(0), surface.reflects_towards(sample.wi));
+    const Mask<F> is_lit = mask_and(sample.is_facing, surface.reflects_towards(sample.wi));
     Color<F> reflected{F(0), F(0), F(0)};
     for_each_material<F>(scene.materials, surface.material, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
-      F weight = wi_local.z;
-      if (needs_both_pdfs(combination))
-        weight = weight * mis_weight(combination, select(lanes, sample.pdf_solid_angle, F(1)),
-                                     bsdf.pdf_solid_angle_(wo_local, wi_local));
-      else
-        weight = weight * mis_weight(combination, F(1), F(1));
-      const Color<F> f = bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * weight;
+      const F weight = needs_both_pdfs(combination)
+                           ? mis_weight(combination, select(lanes, sample.pdf_solid_angle(), F(1)),
+                                        bsdf.pdf_solid_angle_(wo_local, wi_local))
+                           : mis_weight(combination, F(1), F(1));
+      const Color<F> f = bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (wi_local.z * weight);
       reflected = {select(lanes, f.r, reflected.r), select(lanes, f.g, reflected.g), select(lanes, f.b, reflected.b)};
     });
 
@@ -45,24 +43,40 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
     const Vec3<F> origin = surface.offset_origin();
     store_lanes(block.shadow_origin, i, origin);
     store_lanes(block.shadow_direction, i, sample.position - origin);
-    store_lanes(&block.aim[i], sample.aim);
+    store_lanes(&block.aim[i], sample.light * Int<F>(light_pieces) + sample.piece);
   }
   block.clock.finish(Stage::light_samples);
 }
 
-/// Orders the shadow rays that are needed so that a packet aims at one piece of one light: a counting sort by `aim`.
-/// Order only: results go back to the sample's place.
+/// Orders the shadow rays that are needed so that a packet goes from one part of the block's pixels to one piece of one
+/// light: a counting sort. Order only: results go back to the sample's place.
 inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
+  // A packet is coherent where both its ends are near each other: a block of many pixels, which come in Morton order, is
+  // split into quarters and each light into few pieces; a block of one pixel, each light into many.
   constexpr int most_bins = 1024;
+  const int quarters = block.is_one_pixel ? 1 : 4, piece_shift = block.is_one_pixel ? 0 : 2;
+  const std::int64_t bins = std::int64_t(scene.lights.count()) * quarters * (light_pieces >> piece_shift);
   int shift = 0;
-  while (((std::int64_t(scene.lights.count()) * light_pieces - 1) >> shift) >= most_bins) ++shift;
-  std::array<std::int32_t, most_bins + 1> start{};
+  while (((bins - 1) >> shift) >= most_bins) ++shift;
+  const int used_bins = int(((bins - 1) >> shift) + 1);
+
+  std::array<std::int32_t, most_bins + 1> start;
+  std::fill_n(start.begin(), used_bins + 1, 0);
+  const int quarter_size = (block.count + quarters - 1) / quarters;
+  const std::int32_t lights_stride = (light_pieces >> piece_shift);
+  for (int quarter = 0; quarter < quarters; ++quarter) {
+    const int end = std::min(block.count, (quarter + 1) * quarter_size);
+    const std::int32_t offset = quarter * scene.lights.count() * lights_stride;
+    for (int i = quarter * quarter_size; i < end; ++i) {
+      const std::int32_t bin = (offset + (block.aim[i] >> piece_shift)) >> shift;
+      block.aim[i] = bin;
+      start[std::size_t(bin) + 1] -= block.shadow_is_needed[i];
+    }
+  }
+  for (int bin = 0; bin < used_bins; ++bin) start[bin + 1] += start[bin];
+  block.shadow_count = start[used_bins];
   for (int i = 0; i < block.count; ++i)
-    start[std::size_t(block.aim[i] >> shift) + 1] -= block.shadow_is_needed[i];
-  for (int bin = 0; bin < most_bins; ++bin) start[bin + 1] += start[bin];
-  block.shadow_count = start[most_bins];
-  for (int i = 0; i < block.count; ++i)
-    if (block.shadow_is_needed[i]) block.order[std::size_t(start[std::size_t(block.aim[i] >> shift)]++)] = i;
+    if (block.shadow_is_needed[i]) block.order[std::size_t(start[std::size_t(block.aim[i])]++)] = i;
   block.clock.finish(Stage::aiming);
 }
 

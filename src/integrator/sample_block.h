@@ -67,6 +67,7 @@ class StageClock {
 struct SampleBlock {
   int count = 0;         ///< Samples.
   int padded_count = 0;  ///< Up to whole packets of the widest kind; the surplus repeats the last sample.
+  bool is_one_pixel = false;
 
   // Who the sample is.
   Column<std::int32_t> pixel_x, pixel_y;
@@ -82,6 +83,7 @@ struct SampleBlock {
 
   // The surface that the camera sees: what light and BSDF samples start from; material -1: none.
   Vec3Column position, ng, ns, wo;
+  Column<float> clearance;  ///< How far off the surface rays that leave it start (m).
   Column<std::int32_t> material;
 
   // A BSDF sample: what its ray brings is weighted by `throughput`.
@@ -92,7 +94,7 @@ struct SampleBlock {
   Vec3Column shadow_origin, shadow_direction;
   ColorColumn unshadowed;
   Column<std::int32_t> shadow_is_needed, shadow_is_free;
-  Column<std::int32_t> aim;    ///< light * light_pieces + piece
+  Column<std::int32_t> aim;    ///< light * light_pieces + piece; after aiming, the bin.
   Column<std::int32_t> order;  ///< Of tracing: sample numbers, then -1.
   int shadow_count = 0;
 

@@ -12,9 +12,16 @@ inline constexpr float shadow_segment_end = 1 - 1e-4f;
 /// whichever is larger: some tens of rounding errors of the hit point.
 inline constexpr float ray_offset = 1e-5f;
 
+/// How far off the surface the rays that leave it start (m), for a point found at `distance` along its ray.
+template <class F>
+F ray_clearance(const Vec3<F>& position, const F& distance) {
+  return F(ray_offset) * max(max(abs(position.x), abs(position.y)), max(abs(position.z), distance));
+}
+
 template <class F>
 struct SurfacePoint {
   Vec3<F> position, ng, ns, wo;
+  F clearance;
   Int<F> material;
   Mask<F> is_there;
 
@@ -23,6 +30,7 @@ struct SurfacePoint {
         ng(load_lanes<F>(block.ng, i)),
         ns(load_lanes<F>(block.ns, i)),
         wo(load_lanes<F>(block.wo, i)),
+        clearance(load_lanes<F>(&block.clearance[i])),
         material(load_lanes<Int<F>>(&block.material[i])),
         is_there(less(Int<F>(-1), material)) {}
 
@@ -30,11 +38,7 @@ struct SurfacePoint {
   Mask<F> reflects_towards(const Vec3<F>& wi) const { return dot(ng, wo) * dot(ng, wi) > F(0); }
 
   /// Where a reflected ray starts.
-  Vec3<F> offset_origin() const {
-    const F size = max(max(abs(position.x), abs(position.y)), abs(position.z));
-    const F side = select(dot(ng, wo) > F(0), F(1), F(-1));
-    return position + ng * (side * (F(ray_offset) * max(size, F(1e-3f))));
-  }
+  Vec3<F> offset_origin() const { return position + ng * select(dot(ng, wo) > F(0), clearance, -clearance); }
 };
 
 }  // namespace etendue

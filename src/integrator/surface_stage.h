@@ -3,6 +3,7 @@
 
 #include "integrator/mis_weights.h"
 #include "integrator/sample_block.h"
+#include "integrator/surface_point.h"
 #include "light/light.h"
 #include "scene/scene.h"
 
@@ -49,7 +50,10 @@ void closest_hits(const Scene& scene, SampleBlock& block) {
     const Mask<F> is_hit = less(Int<F>(-1), geometry);
     const Vec3<F> direction = load_lanes<F>(block.ray_direction, i);
     const HitNormals<F> normals(scene, block, i, is_hit);
-    store_lanes(block.position, i, load_lanes<F>(block.ray_origin, i) + direction * load_lanes<F>(&block.hit_t[i]));
+    const F distance = load_lanes<F>(&block.hit_t[i]);
+    const Vec3<F> position = load_lanes<F>(block.ray_origin, i) + direction * distance;
+    store_lanes(block.position, i, position);
+    store_lanes(&block.clearance[i], ray_clearance(position, distance));
     store_lanes(block.ng, i, normals.ng);
     store_lanes(block.ns, i, normals.ns);
     store_lanes(block.wo, i, -direction);

@@ -8,6 +8,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace etendue {
 namespace {
@@ -17,7 +18,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The test of a difference whose standard error is known or estimated with so many degrees of freedom.
 MeanTest test_difference(double difference, double standard_error, double degrees_of_freedom) {
-  if (!std::isfinite(difference) || !std::isfinite(standard_error)) return {unknown, 0, unknown};
+  if (!std::isfinite(difference) || !std::isfinite(standard_error) || standard_error < 0)
+    return {unknown, 0, unknown};
   if (standard_error == 0) {
     if (difference == 0) return {0, degrees_of_freedom, 1};
     return {std::copysign(infinity, difference), degrees_of_freedom, 0};
@@ -59,10 +61,11 @@ MeanTest z_test(double value, double reference, double standard_error) {
 }
 
 Interval student_t_interval(const RunningStatistics& sample, double confidence) {
-  const double degrees_of_freedom = sample.count < 2 ? 1 : double(sample.count - 1);
-  const double quantile = student_t_quantile((1 + confidence) / 2, degrees_of_freedom);
+  if (!(confidence > 0 && confidence < 1))
+    throw std::domain_error("student_t_interval: the confidence must lie in (0, 1)");
   if (sample.count < 2) return {-infinity, infinity};
-  const double half_width = quantile * sample.standard_error();
+  const double half_width =
+      student_t_quantile((1 + confidence) / 2, double(sample.count - 1)) * sample.standard_error();
   return {sample.mean - half_width, sample.mean + half_width};
 }
 

@@ -26,7 +26,7 @@ MeanTest t_test(const RunningStatistics& sample, double reference, double varian
 MeanTest welch_t_test(const RunningStatistics& a, const RunningStatistics& b);
 
 /// Two-sided test of "the expectation of `value` is `reference`" for a normal value whose `standard_error` >=
-/// 0 is known. Zero standard error: p = 1 where the two are equal, else p = 0.
+/// 0 is known. Zero standard error: p = 1 where the two are equal, else p = 0. A negative one: NaN.
 MeanTest z_test(double value, double reference, double standard_error);
 
 struct Interval {

@@ -1,6 +1,11 @@
 #include "base/error.h"
 #include "film/image_file.h"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfTiledOutputFile.h>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -38,7 +43,10 @@ class ExrFile : public testing::Test {
  protected:
   ExrFile() { fs::create_directories(folder); }
   ~ExrFile() override { fs::remove_all(folder); }
-  void write_bytes(const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+  void write_bytes(const std::string& bytes) {
+    fs::remove(file);  // Cutting a file short and filling it again makes some file systems wait for the disk.
+    std::ofstream(file, std::ios::binary) << bytes;
+  }
   std::string read_bytes() const {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -52,7 +60,8 @@ class ExrFile : public testing::Test {
 };
 
 Image small_image() {
-  constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+  constexpr float infinity = std::numeric_limits<float>::infinity(),
+                  nan = std::numeric_limits<float>::quiet_NaN();
   return {3,
           2,
           {{"R", {0, 1, 2, 3, 4, 5}},
@@ -104,6 +113,73 @@ TEST_F(ExrFile, ReplacesAnOlderFile) {
   write_bytes("old");
   write_exr(file, small_image());
   EXPECT_EQ(read_exr(file).width, 3);
+}
+
+/// A 37 x 21 image at (-5, 100), written by OpenEXR itself: H (half), F (float) and U (unsigned) count
+/// pixels.
+struct ForeignImage {
+  static constexpr int width = 37, height = 21;
+  ForeignImage() : header(Imath::Box2i({0, 0}, {99, 199}), window) {
+    for (int i = 0; i < width * height; ++i) {
+      h.push_back(float(i));
+      f.push_back(float(i) + 0.25f);
+      u.push_back(unsigned(i) * 1000);
+    }
+    add("H", Imf::HALF, h.data());
+    add("F", Imf::FLOAT, f.data());
+    add("U", Imf::UINT, u.data());
+  }
+  template <class T>
+  void add(const char* name, Imf::PixelType type, T* values) {
+    header.channels().insert(name, Imf::Channel(type));
+    pixels.insert(name, Imf::Slice::Make(type, values, window, sizeof(T), sizeof(T) * width));
+  }
+
+  const Imath::Box2i window{{-5, 100}, {-5 + width - 1, 100 + height - 1}};
+  Imf::Header header;
+  Imf::FrameBuffer pixels;
+  std::vector<half> h;
+  std::vector<float> f;
+  std::vector<unsigned> u;
+};
+
+void expect_foreign_image(const Image& image) {
+  ASSERT_EQ(image.width, ForeignImage::width);
+  ASSERT_EQ(image.height, ForeignImage::height);
+  ASSERT_EQ(image.channels.size(), 3u);
+  for (int i = 0; i < ForeignImage::width * ForeignImage::height; ++i) {
+    ASSERT_EQ(image.find("H")->values[i], float(i));
+    ASSERT_EQ(image.find("F")->values[i], float(i) + 0.25f);
+    ASSERT_EQ(image.find("U")->values[i], float(i * 1000));
+  }
+}
+
+TEST_F(ExrFile, ReadsHalfAndUnsignedInAnOffsetWindowUpsideDown) {
+  ForeignImage foreign;
+  foreign.header.lineOrder() = Imf::DECREASING_Y;
+  {
+    Imf::OutputFile output(file.c_str(), foreign.header);
+    output.setFrameBuffer(foreign.pixels);
+    output.writePixels(ForeignImage::height);
+  }
+  expect_foreign_image(read_exr(file));
+}
+
+TEST_F(ExrFile, ReadsTiledFilesOfEveryLevelMode) {
+  for (const auto mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS}) {
+    ForeignImage foreign;
+    foreign.header.setTileDescription(Imf::TileDescription(16, 8, mode));
+    {
+      Imf::TiledOutputFile output(file.c_str(), foreign.header);
+      output.setFrameBuffer(foreign.pixels);
+      for (int y = 0; y < output.numYLevels();
+           ++y)  // All levels hold pixels of the first; only that is read.
+        for (int x = 0; x < output.numXLevels(); ++x)
+          if (output.isValidLevel(x, y))
+            output.writeTiles(0, output.numXTiles(x) - 1, 0, output.numYTiles(y) - 1, x, y);
+    }
+    expect_foreign_image(read_exr(file));
+  }
 }
 
 TEST_F(ExrFile, RefusesAnImageThatIsNotOne) {

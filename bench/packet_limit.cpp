@@ -1,0 +1,210 @@
+// How near a render comes to the speed of its rays alone: see docs/performance.md for how to read it.
+//
+// Tiles spread over the image are rendered on one thread; the rays of each are then cast again, bare, in packets of the
+// same width and in sample order. fraction_of_limit = bare time / render time.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "generated_scenes.h"
+#include "integrator/surface_point.h"
+#include "render/kernel.h"
+
+namespace {
+
+using namespace etendue;
+
+constexpr int width_px = 768, height_px = 512, tile_px = 32;
+
+/// Processor time of this thread: other programs on the machine do not count.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+/// The rays of a tile, in sample order.
+struct Recording {
+  struct Vec3s {
+    std::vector<float> x, y, z;
+    void append(const Vec3Column& column, int count) {
+      x.insert(x.end(), column.x.begin(), column.x.begin() + count);
+      y.insert(y.end(), column.y.begin(), column.y.begin() + count);
+      z.insert(z.end(), column.z.begin(), column.z.begin() + count);
+    }
+    void clear() { x.clear(), y.clear(), z.clear(); }
+  };
+  Vec3s origin, direction, shadow_origin, shadow_direction;
+  std::vector<float> t_near, t_far;
+  std::vector<std::int32_t> is_active, shadow_order;
+
+  void append(const SampleBlock& block) {
+    const int count = block.padded_count;
+    for (int i = 0; i < count; ++i)
+      shadow_order.push_back(block.shadow_is_needed[i] && i < block.count ? std::int32_t(shadow_origin.x.size()) + i : -1);
+    origin.append(block.ray_origin, count);
+    direction.append(block.ray_direction, count);
+    t_near.insert(t_near.end(), block.ray_t_near.begin(), block.ray_t_near.begin() + count);
+    t_far.insert(t_far.end(), block.ray_t_far.begin(), block.ray_t_far.begin() + count);
+    is_active.insert(is_active.end(), block.ray_is_active.begin(), block.ray_is_active.begin() + count);
+    shadow_origin.append(block.shadow_origin, count);
+    shadow_direction.append(block.shadow_direction, count);
+  }
+  void clear() {
+    for (Vec3s* vectors : {&origin, &direction, &shadow_origin, &shadow_direction}) vectors->clear();
+    for (std::vector<float>* values : {&t_near, &t_far}) values->clear();
+    for (std::vector<std::int32_t>* values : {&is_active, &shadow_order}) values->clear();
+  }
+
+  /// Casts them all; seconds.
+  double cast_bare(const RayCaster& rays, int lanes) {
+    const int count = int(t_near.size());
+    hit_t_.resize(t_near.size());
+    for (auto* values : {&ng_x_, &ng_y_, &ng_z_, &u_, &v_}) values->resize(t_near.size());
+    for (auto* values : {&geometry_, &primitive_, &is_free_}) values->resize(t_near.size());
+    const double start = thread_seconds();
+    rays.closest_hits({origin.x.data(), origin.y.data(), origin.z.data(), direction.x.data(), direction.y.data(),
+                       direction.z.data(), t_near.data(), t_far.data(), is_active.data(), count},
+                      {hit_t_.data(), ng_x_.data(), ng_y_.data(), ng_z_.data(), u_.data(), v_.data(),
+                       geometry_.data(), primitive_.data()},
+                      lanes, Coherence::coherent);
+    rays.unoccluded({shadow_origin.x.data(), shadow_origin.y.data(), shadow_origin.z.data(),
+                     shadow_direction.x.data(), shadow_direction.y.data(), shadow_direction.z.data(),
+                     shadow_order.data(), count, shadow_segment_end},
+                    is_free_.data(), lanes, Coherence::incoherent);
+    return thread_seconds() - start;
+  }
+
+ private:
+  std::vector<float> hit_t_, ng_x_, ng_y_, ng_z_, u_, v_;
+  std::vector<std::int32_t> geometry_, primitive_, is_free_;
+};
+
+struct Measurement {
+  double samples = 0, render_seconds = 0, bare_seconds = 0;
+  std::map<std::string, double> stage_shares;
+};
+
+Measurement measure(const Scene& scene, Isa isa, int samples_per_pixel, double most_samples) {
+  RenderSettings settings;
+  settings.samples_per_pixel = samples_per_pixel;
+  settings.replicates = 4;
+  settings.isa = isa;
+  settings.threads = 1;
+  const Kernel& kernel = kernel_for(isa);
+  Film film(width_px, height_px);
+  std::vector<InvalidSample> invalid;
+  const auto block = std::make_unique<SampleBlock>();
+  const auto recording_block = std::make_unique<SampleBlock>();
+  Recording recording;
+  const std::function<void(const SampleBlock&)> record = [&](const SampleBlock& b) { recording.append(b); };
+
+  constexpr int columns = width_px / tile_px, tiles = columns * (height_px / tile_px);
+  const double tile_samples = double(tile_px) * tile_px * samples_per_pixel;
+  const int wanted = std::clamp(int(most_samples / tile_samples), 8, tiles);
+  Measurement sum;
+  for (int k = 0; k < wanted; ++k) {
+    const int tile = int((std::int64_t(k) * tiles + tiles / 2) / wanted) % tiles;
+    TileJob job{.scene = &scene,
+                .settings = &settings,
+                .x_begin = tile % columns * tile_px,
+                .y_begin = tile / columns * tile_px,
+                .x_end = tile % columns * tile_px + tile_px,
+                .y_end = tile / columns * tile_px + tile_px,
+                .block = recording_block.get(),
+                .film = &film,
+                .invalid = &invalid,
+                .on_block = &record};
+    recording.clear();
+    kernel.render_tile(job);
+    job.block = block.get();
+    job.on_block = nullptr;
+    const double start = thread_seconds();
+    kernel.render_tile(job);
+    sum.render_seconds += thread_seconds() - start;
+    sum.bare_seconds += recording.cast_bare(scene.rays, kernel.lanes);
+    sum.samples += tile_samples;
+  }
+  double staged = 0;
+  for (const double seconds : block->clock.seconds()) staged += seconds;
+  for (std::size_t s = 0; s < stage_names.size(); ++s)
+    if (block->clock.seconds()[s] > 0) sum.stage_shares[stage_names[s]] = block->clock.seconds()[s] / staged;
+  return sum;
+}
+
+/// Samples a second of a whole render.
+double throughput(const Scene& scene, int threads, int samples_per_pixel) {
+  RenderSettings settings;
+  settings.samples_per_pixel = samples_per_pixel;
+  settings.isa = available_isas().back();
+  settings.threads = threads;
+  const RenderResult result = render(scene, settings);
+  return double(result.counts.samples) / result.seconds;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Fraction of the bare-ray limit that a render reaches, on generated scenes"};
+  bool is_json = false, has_normals = false;
+  double most_samples = 25e6;
+  std::vector<std::string> isa_names;
+  std::vector<int> grids{60, 700}, sample_counts{64, 1024};
+  app.add_flag("--json", is_json, "JSON on standard output");
+  app.add_flag("--normals", has_normals, "Meshes with vertex normals");
+  app.add_option("--grids", grids, "Sizes of the scene: 2 grid^2 triangles and more")->delimiter(',');
+  app.add_option("--spp", sample_counts, "Samples a pixel")->delimiter(',');
+  app.add_option("--isa", isa_names, "Instruction sets; all that this machine has unless given")->delimiter(',');
+  app.add_option("--samples", most_samples, "Samples to render for each figure")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<Isa> isas;
+  for (const std::string& name : isa_names) isas.push_back(isa_from_name(name));
+  if (isas.empty()) isas = available_isas();
+
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  std::FILE* text = is_json ? stderr : stdout;
+  for (const int grid : grids) {
+    const Scene scene = bench::terrain_scene(grid, width_px, height_px, has_normals);
+    const std::string name =
+        fmt::format("terrain, {} triangles{}", scene.geometry.triangle_count(), has_normals ? ", vertex normals" : "");
+    fmt::print(text, "\n{}; one thread\n", name);
+    for (const Isa isa : isas)
+      for (const int samples_per_pixel : sample_counts) {
+        const Measurement m = measure(scene, isa, samples_per_pixel, isa == Isa::scalar ? most_samples / 4 : most_samples);
+        const double fraction = m.bare_seconds / m.render_seconds;
+        fmt::print(text, "  {:<6} {:>4} samples a pixel: {:6.2f} M samples/s, limit {:6.2f}, fraction_of_limit {:.3f}\n",
+                   isa_name(isa), samples_per_pixel, 1e-6 * m.samples / m.render_seconds,
+                   1e-6 * m.samples / m.bare_seconds, fraction);
+        nlohmann::ordered_json stages;
+        fmt::print(text, "        ");
+        for (const auto& [stage, share] : m.stage_shares) {
+          stages[stage] = share;
+          fmt::print(text, " {} {:.0f} %", stage, 100 * share);
+        }
+        fmt::print(text, "\n");
+        json.push_back({{"scene", name},
+                        {"isa", isa_name(isa)},
+                        {"spp", samples_per_pixel},
+                        {"samples_per_second", m.samples / m.render_seconds},
+                        {"limit_samples_per_second", m.samples / m.bare_seconds},
+                        {"fraction_of_limit", fraction},
+                        {"stages", stages}});
+      }
+    if (!isa_names.empty()) continue;  // The speed-up belongs to the complete run.
+    throughput(scene, 2, 16);
+    double ratio = 0;
+    constexpr int rounds = 3;
+    for (int round = 0; round < rounds; ++round)
+      ratio += throughput(scene, 2, 64) / throughput(scene, 1, 64) / rounds;
+    fmt::print(text, "  2 threads over 1: {:.2f}\n", ratio);
+    for (auto& row : json)
+      if (row["scene"] == name) row["speed_up_2_threads"] = ratio;
+  }
+  if (is_json) fmt::print("{}\n", json.dump(2));
+}
