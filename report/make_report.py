@@ -242,6 +242,7 @@ def main():
             "name": name, "title": title, "about": about, "heat": heat_range, "ticks": ticks(*heat_range),
             "spp": scene.methods["light"].spp, "seeds": len(m.equal_samples["light"]), "rows": method_rows(scene),
             "time_rows": time_rows(scene), "time_mismatch": f"{100 * scene.worst_time_mismatch:.1f} %",
+            "is_uneven": scene.worst_time_mismatch > 0.1,
             "check_rows": check_rows(scene), "check_words": check_words(scene),
             "strip_words": strip_words(scene, layout[name]["lights_end"]) if "lights_end" in layout[name] else None,
             "sheets": sheets(m, heat_range), "viewer_json": viewer_data(m, heat_range),
