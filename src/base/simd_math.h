@@ -1,7 +1,7 @@
 // Elementary functions over lanes, and loops over the distinct values in a packet.
 #pragma once
 
-#include "base/simd.h"
+#include "base/mask.h"
 
 namespace etendue {
 
@@ -22,6 +22,12 @@ xsimd::batch<float, A> max(const xsimd::batch<float, A>& a, const xsimd::batch<f
   return xsimd::max(a, b);
 }
 
+inline std::int32_t min_int(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
+template <class A>
+xsimd::batch<std::int32_t, A> min_int(const xsimd::batch<std::int32_t, A>& a, const xsimd::batch<std::int32_t, A>& b) {
+  return xsimd::min(a, b);
+}
+
 inline float exp(float x) { return std::exp(x); }
 inline float log(float x) { return std::log(x); }
 template <class A>
@@ -33,8 +39,8 @@ xsimd::batch<float, A> log(const xsimd::batch<float, A>& x) {
   return xsimd::log(x);
 }
 
-/// x^y for x >= 0; 0^y = 0 for y > 0.
-inline float pow_positive(float x, float y) { return std::pow(x, y); }
+/// x^y for x >= 0; 0^y = 0, for y = 0 too: a lobe cos^0 ends where the cosine does.
+inline float pow_positive(float x, float y) { return x > 0 ? std::pow(x, y) : 0; }
 template <class A>
 xsimd::batch<float, A> pow_positive(const xsimd::batch<float, A>& x, const xsimd::batch<float, A>& y) {
   using F = xsimd::batch<float, A>;

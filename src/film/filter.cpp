@@ -37,18 +37,23 @@ const std::vector<Plugin>& filter_plugins() {
 template <class Cumulative>
 PixelFilter::PixelFilter(double radius_px, const Cumulative& cumulative) {
   const double total = cumulative(radius_px);
-  for (int i = 0; i <= intervals; ++i) {
-    double low = -radius_px, high = radius_px;
+  offset_px_.push_back(float(-radius_px));
+  for (int i = 1; i < intervals; ++i) {
+    const double t = double(i) / intervals;
+    double low = -radius_px, high = 0;
     for (int step = 0; step < 60; ++step) {
       const double middle = 0.5 * (low + high);
-      (cumulative(middle) * intervals < total * i ? low : high) = middle;
+      (cumulative(middle) < 0.5 * t * t * total ? low : high) = middle;
     }
-    offset_px_.push_back(i == 0 ? float(-radius_px) : i == intervals ? float(radius_px) : float(0.5 * (low + high)));
+    offset_px_.push_back(float(0.5 * (low + high)));
   }
+  offset_px_.insert(offset_px_.end(), 2, 0.0f);
 }
 
 PixelFilter PixelFilter::box(double radius_px) {
-  return {radius_px, [=](double x) { return x + radius_px; }};
+  PixelFilter filter(radius_px, [=](double x) { return x + radius_px; });
+  filter.is_box_ = true;
+  return filter;
 }
 
 PixelFilter PixelFilter::tent(double radius_px) {

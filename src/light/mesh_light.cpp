@@ -10,6 +10,7 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   geometry_id_.push_back(geometry_id);
   first_triangle_.push_back(std::int32_t(alias_.size()));
   triangle_count_.push_back(std::int32_t(count));
+  pieces_per_triangle_.push_back(float(light_pieces) / float(count));
   std::vector<double> areas;
   areas.reserve(count);
   double total_area = 0;

@@ -28,7 +28,7 @@ class MeshLights {
     const auto is_own = less(fraction, threshold);
     const I triangle = select(is_own, bucket, gather(alias_.data(), first + bucket));
     const F left = to_unit_float(fraction), split = to_unit_float(threshold);
-    const F stretched = select(is_own, left / max(split, F(0x1p-24f)), (left - split) / max(F(1) - split, F(0x1p-24f)));
+    const F stretched = select(is_own, left, left - split) / max(select(is_own, split, F(1) - split), F(0x1p-24f));
     const Vec2<F> u_triangle{to_unit_float(u.x), min(max(stretched, F(0)), F(0x1.fffffep-1f))};
 
     const float* corner = triangles_.data();
@@ -47,12 +47,11 @@ class MeshLights {
     const auto is_smooth = mask_and(m, equal(gather(geometry.has_normals.data(), geometry_id), I(1)));
     if (any(is_smooth)) {
       const Vec3<F> ns = interpolate_normal<F>(geometry, geometry_id, triangle, barycentric, is_smooth);
-      point.ns = {select(is_smooth, ns.x, point.ng.x), select(is_smooth, ns.y, point.ng.y),
-                  select(is_smooth, ns.z, point.ng.z)};
+      point.ns = select(is_smooth, ns, point.ng);
     }
     point.pdf_area = gather(pdf_area_.data(), row);
-    const F along = (to_float(triangle) + u_triangle.y) / to_float(count);
-    point.piece = to_int(along * F(float(light_pieces) * 0.999f));
+    const F along = (to_float(triangle) + u_triangle.y) * gather(pieces_per_triangle_.data(), row);
+    point.piece = min_int(to_int(along), I(light_pieces - 1));
     return point;
   }
 
@@ -65,7 +64,7 @@ class MeshLights {
  private:
   // Per light.
   std::vector<std::int32_t> geometry_id_, first_triangle_, triangle_count_;
-  std::vector<float> pdf_area_;
+  std::vector<float> pdf_area_, pieces_per_triangle_;
   // Per triangle of all lights: the alias table, and a corner and two edges.
   std::vector<std::uint32_t> alias_threshold_;
   std::vector<std::int32_t> alias_;

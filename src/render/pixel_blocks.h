@@ -56,8 +56,11 @@ class PixelBlocks {
   bool next(SampleBlock& block) {
     if (y_ >= job_.y_end) return false;
     pixels_.clear();
-    for (int y = y_; y < std::min(y_ + height_, job_.y_end); ++y)
-      for (int x = x_; x < std::min(x_ + width_, job_.x_end); ++x) pixels_.push_back({x, y});
+    for (int k = 0; k < width_ * height_; ++k) {
+      const Pixel pixel{x_ + even_bits(k), y_ + even_bits(k >> 1)};
+      if (pixel.x < job_.x_end && pixel.y < job_.y_end) pixels_.push_back(pixel);
+    }
+    block.is_one_pixel = pixels_.size() == 1;
     samples_in_block_ = std::min(samples_ - first_sample_, block_capacity);
     block.count = 0;
     for (const Pixel& pixel : pixels_) fill_pixel(block, pixel);
@@ -104,6 +107,13 @@ class PixelBlocks {
   struct Pixel {
     int x, y;
   };
+
+  /// Bits 0, 2, 4 ... of a Morton number below 2^10.
+  static int even_bits(int morton) {
+    int result = 0;
+    for (int bit = 0; bit < 5; ++bit) result |= (morton >> (2 * bit) & 1) << bit;
+    return result;
+  }
 
   /// f(replicate, index of the first sample in it, count) over this block's samples of one pixel.
   template <class Function>

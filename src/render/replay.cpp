@@ -67,17 +67,17 @@ void trace_camera_ray(const Scene& scene, SampleBlock& block, SampleTrace& trace
   const Vec2<F> u_film = to_unit_floats<F>(sample_bits<F>(scene, block, 0, dimension::film));
   trace.x_px = float(block.pixel_x[0]) + 0.5f + scene.filter.sample_offset_px(u_film.x);
   trace.y_px = float(block.pixel_y[0]) + 0.5f + scene.filter.sample_offset_px(u_film.y);
-  trace.ray_origin = load_lanes<F>(block.ray_origin, 0);
-  trace.ray_direction = load_lanes<F>(block.ray_direction, 0);
+  trace.ray_origin = load_lanes<F>(block.camera_ray.origin, 0);
+  trace.ray_direction = load_lanes<F>(block.camera_ray.direction, 0);
   closest_hits<F>(scene, block);
-  const SurfacePoint<F> surface(block, 0);
+  const SurfacePoint<F> surface(scene, block.camera_ray, block.camera_hit, 0);
   if (surface.is_there) {
-    const std::int32_t geometry = block.hit_geometry[0];
+    const std::int32_t geometry = block.camera_hit.geometry[0];
     trace.hit = {surface.position,
                  surface.ng,
                  surface.ns,
                  geometry,
-                 block.hit_primitive[0],
+                 block.camera_hit.primitive[0],
                  surface.material,
                  scene.geometry.light[std::size_t(geometry)]};
   }
@@ -86,24 +86,26 @@ void trace_camera_ray(const Scene& scene, SampleBlock& block, SampleTrace& trace
 }
 
 SampleTrace::LightSample light_sample_of(const Scene& scene, const SampleBlock& block) {
-  const SurfacePoint<F> surface(block, 0);
+  const SurfacePoint<F> surface(scene, block.camera_ray, block.camera_hit, 0);
   const LightSample<F> sample =
       sample_lights<F>(scene, surface.position, sample_bits<F>(scene, block, 0, dimension::light), true);
-  return {sample.aim / light_pieces,          sample.position,
-          sample.radiance_over_pdf,           sample.pdf_solid_angle,
-          load_lanes<F>(block.unshadowed, 0), block.shadow_is_needed[0] != 0,
+  return {sample.light,
+          sample.position,
+          sample.radiance_over_pdf,
+          sample.is_facing ? sample.pdf_solid_angle() : 0,
+                    load_lanes<F>(block.unshadowed, 0), block.shadow_is_needed[0] != 0,
           block.shadow_is_free[0] != 0};
 }
 
 SampleTrace::BsdfSample bsdf_sample_of(const Scene& scene, const SampleBlock& block) {
-  const bool is_ray_cast = block.ray_is_active[0] != 0;
-  const bool is_hit = is_ray_cast && block.hit_geometry[0] >= 0;
+  const bool is_ray_cast = block.bsdf_ray.is_active[0] != 0;
+  const bool is_hit = is_ray_cast && block.bsdf_hit.geometry[0] >= 0;
   return {is_ray_cast,
-          load_lanes<F>(block.ray_direction, 0),
+          load_lanes<F>(block.bsdf_ray.direction, 0),
           load_lanes<F>(block.throughput, 0),
           block.pdf_bsdf[0],
-          is_hit ? block.hit_t[0] : std::numeric_limits<float>::infinity(),
-          is_hit ? scene.geometry.light[std::size_t(block.hit_geometry[0])] : -1};
+          is_hit ? block.bsdf_hit.t[0] : std::numeric_limits<float>::infinity(),
+          is_hit ? scene.geometry.light[std::size_t(block.bsdf_hit.geometry[0])] : -1};
 }
 
 }  // namespace

@@ -1,0 +1,240 @@
+// All integrators estimate one image: Welch's t-test, block by block.
+//
+// False-alarm rate: 0.01 for the two scenes of the exercise together (Sidak over scenes, blocks, channels and
+// pairs of integrators), and 1e-5 for the scene with everything in it; fixed seeds. Seen to fail when: mis
+// weights both samples with the light's density; average adds whole samples; the light stage leaves out
+// choice.pmf (4 lights); add_bsdf_hits counts lights from behind; shadow rays go 5 % too far.
+#include "render/kernel.h"
+#include "stats/significance.h"
+#include "stats/t_test.h"
+#include "test_scene.h"
+
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <memory>
+
+namespace etendue {
+namespace {
+
+struct Method {
+  const char* name;
+  IntegratorKind kind;
+  Combination heuristic;
+};
+/// Each is held against the first.
+constexpr Method methods[]{{"mis balance", IntegratorKind::mis, Combination::balance},
+                           {"light", IntegratorKind::light, Combination::balance},
+                           {"direct", IntegratorKind::direct, Combination::balance},
+                           {"average", IntegratorKind::average, Combination::balance},
+                           {"mis power", IntegratorKind::mis, Combination::power}};
+constexpr int block_px = 16;
+
+/// The mean over a block of pixels, which are independent, as a sample whose standard error and degrees of
+/// freedom (Satterthwaite 1946) Welch's test can take.
+RunningStatistics block_mean(const Film& film, int x_begin, int y_begin, double Color<double>::*channel) {
+  double mean = 0, variance = 0, fourth = 0;
+  int pixels = 0;
+  for (int y = y_begin; y < std::min(y_begin + block_px, film.height()); ++y)
+    for (int x = x_begin; x < std::min(x_begin + block_px, film.width()); ++x) {
+      const PixelStatistics& pixel = film.at(x, y);
+      const double error_sq = pixel.m2.*channel / double(pixel.count - 1) / double(pixel.count);
+      mean += pixel.mean.*channel;
+      variance += error_sq;
+      fourth += error_sq * error_sq / double(pixel.count - 1);
+      ++pixels;
+    }
+  const auto count = std::int64_t(fourth > 0 ? variance * variance / fourth : 2) + 1;
+  variance /= double(pixels) * pixels;
+  return {count, mean / pixels, variance * double(count) * double(count - 1)};
+}
+
+/// \param tests of the whole family, at `level`
+void expect_equal_means(const Scene& scene, int samples_per_pixel, double level, int tests,
+                        const std::string& what) {
+  std::vector<Film> films;
+  std::uint64_t seed = 100;
+  for (const Method& method : methods) {
+    // Another seed for each: the test wants independent estimates. BSDF sampling alone finds a small light so
+    // rarely that fewer samples would not be normally distributed.
+    const int samples = method.kind == IntegratorKind::direct ? 4 * samples_per_pixel : samples_per_pixel;
+    RenderResult result = render(scene, render_settings(method.kind, samples, 16, ++seed, method.heuristic));
+    EXPECT_EQ(result.counts.invalid_samples, 0) << what << ", " << method.name;
+    films.push_back(std::move(result.film));
+  }
+  for (std::size_t m = 1; m < films.size(); ++m) {
+    double largest = 0;
+    for (int y = 0; y < films[0].height(); y += block_px)
+      for (int x = 0; x < films[0].width(); x += block_px)
+        for (const auto channel : {&Color<double>::r, &Color<double>::g, &Color<double>::b}) {
+          const RunningStatistics a = block_mean(films[m], x, y, channel),
+                                  b = block_mean(films[0], x, y, channel);
+          // Where nothing varies, both see the background, or one light all over.
+          const MeanTest test = welch_t_test(a, b);
+          largest = std::max(largest, std::abs(test.statistic));
+          EXPECT_FALSE(is_rejected(test.p_value, level, tests))
+              << what << ", block at " << x << ", " << y << ": " << methods[m].name << " " << a.mean << " +- "
+              << a.standard_error() << ", " << methods[0].name << " " << b.mean << " +- "
+              << b.standard_error() << ", p = " << test.p_value;
+        }
+    ::testing::Test::RecordProperty(std::string("largest_t_") + methods[m].name, std::to_string(largest));
+  }
+}
+
+void set_integer(Object& object, const std::string& name, int value) {
+  for (Property& property : object.properties)
+    if (property.name == name) property.value = value;
+}
+
+/// An exercise scene at 96 x 64 pixels.
+LoadedScene small_exercise_scene(const std::filesystem::path& file) {
+  SceneDesc description = read_nori_xml(file);
+  for (Object& child : description.root.children) {
+    if (child.family != "camera") continue;
+    set_integer(child, "width", 96);
+    set_integer(child, "height", 64);
+  }
+  return load_scene(description);
+}
+
+class ExerciseScene : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ExerciseScene, IntegratorsAgree) {
+  const std::filesystem::path file = std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes/ex3" / GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const LoadedScene loaded = small_exercise_scene(file);
+  ASSERT_EQ(loaded.scene.camera.width_px, 96);
+  constexpr int scenes = 2, blocks = 24, channels = 3, pairs = 4;
+  expect_equal_means(loaded.scene, 4096, 0.01, scenes * blocks * channels * pairs, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Ex3, ExerciseScene, ::testing::Values("area_sampling.xml", "phong_plates.xml"),
+                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+
+/// A rectangle, a sphere and a smooth mesh as lights; diffuse, glossy and smooth surfaces.
+LoadedScene everything_scene(int side_px = 64) {
+  // An octahedron with vertex normals: the light shines where both normals face the receiver.
+  const std::string octahedron =
+      "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\nvn 1 0 0\nvn -1 0 0\nvn 0 1 0\nvn 0 -1 0\nvn "
+      "0 0 1\nvn 0 0 -1\n"
+      "f 1//1 3//3 5//5\nf 3//3 2//2 5//5\nf 2//2 4//4 5//5\nf 4//4 1//1 5//5\n"
+      "f 3//3 1//1 6//6\nf 2//2 3//3 6//6\nf 4//4 2//2 6//6\nf 1//1 4//4 6//6\n";
+  const auto octahedron_at = [](const char* at, double scale, const std::string& inside) {
+    return fmt::format(
+        "<mesh type=\"obj\"><string name=\"filename\" value=\"octahedron.obj\"/><transform name=\"toWorld\">"
+        "<scale value=\"{},{},{}\"/><translate value=\"{}\"/></transform>{}</mesh>\n",
+        scale, scale, scale, at, inside);
+  };
+  return load_scene_text(camera_xml({0, -6, 2.5}, {0, 0, 0.7}, 45, side_px, "sobol") +
+                             rectangle_xml({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, phong_xml(0.4, 0.3, 30)) +
+                             rectangle_xml({0, 3, 2}, {4, 0, 0}, {0, 0, 2}, diffuse_xml(0.5)) +
+                             rectangle_xml({-2, 0, 3}, {0.7, 0, 0.2}, {0, -0.5, 0}, light_xml(6)) +
+                             sphere_xml({1.8, 0.5, 2}, 0.5, light_xml(4) + diffuse_xml(0.1)) +
+                             octahedron_at("0,1,2.6", 0.5, light_xml(5) + diffuse_xml(0)) +
+                             octahedron_at("-1,0,0.8", 0.7, phong_xml(0.2, 0.6, 200)) +
+                             sphere_xml({1, -0.5, 0.6}, 0.6, phong_xml(0.3, 0.5, 1000)),
+                         {{"octahedron.obj", octahedron}});
+}
+
+TEST(SceneWithEverything, IntegratorsAgree) {
+  expect_equal_means(everything_scene().scene, 1024, 1e-5, 16 * 3 * 4, "everything");
+}
+
+// --- bits ---
+
+bool is_same(const PixelStatistics& a, const PixelStatistics& b) {
+  return a.count == b.count && a.mean == b.mean && a.m2 == b.m2;
+}
+
+int differing_pixels(const Film& a, const Film& b) {
+  int count = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x) count += !is_same(a.at(x, y), b.at(x, y));
+  return count;
+}
+
+TEST(Bits, AreTheSameForAnyNumberOfThreadsAndAgain) {
+  const LoadedScene loaded = everything_scene(40);
+  for (const Isa isa : available_isas())
+    for (const int samples : {1, 48, 1100}) {  // Many pixels a block, few, and more than one block a pixel.
+      RenderSettings settings = render_settings(IntegratorKind::mis, samples, samples == 1 ? 1 : 4, 5);
+      settings.isa = isa;
+      settings.threads = 1;
+      const Film once = render(loaded.scene, settings).film;
+      settings.threads = 2;
+      EXPECT_EQ(differing_pixels(once, render(loaded.scene, settings).film), 0)
+          << isa_name(isa) << ", 2 threads";
+      if (samples > 48) continue;
+      settings.threads = 1;
+      EXPECT_EQ(differing_pixels(once, render(loaded.scene, settings).film), 0) << isa_name(isa) << ", again";
+    }
+}
+
+TEST(Bits, AreTheSameForTilesInAnyOrder) {
+  const LoadedScene loaded = everything_scene(80);
+  const RenderSettings settings = render_settings(IntegratorKind::average, 16, 4, 5);
+  const Film film = render(loaded.scene, settings).film;
+  Film backwards(80, 80);
+  const auto block = std::make_unique<SampleBlock>();
+  std::vector<InvalidSample> invalid;
+  for (int y = 64; y >= 0; y -= 32)
+    for (int x = 64; x >= 0; x -= 32) {
+      TileJob job{.scene = &loaded.scene,
+                  .settings = &settings,
+                  .x_begin = x,
+                  .y_begin = y,
+                  .x_end = std::min(x + 32, 80),
+                  .y_end = std::min(y + 32, 80),
+                  .block = block.get(),
+                  .film = &backwards,
+                  .invalid = &invalid};
+      kernel_for(settings.isa).render_tile(job);
+    }
+  EXPECT_EQ(differing_pixels(film, backwards), 0);
+}
+
+TEST(Bits, DependOnTheSeed) {
+  const LoadedScene loaded = everything_scene();
+  EXPECT_GT(differing_pixels(render(loaded.scene, render_settings(IntegratorKind::light, 8, 2, 1)).film,
+                             render(loaded.scene, render_settings(IntegratorKind::light, 8, 2, 2)).film),
+            2000);
+}
+
+double relative_difference_of_means(const Film& a, const Film& b) {
+  return std::abs(a.mean().g / b.mean().g - 1);
+}
+
+TEST(Bits, DoNotDependOnTheOrderOfShadowRays) {
+  const LoadedScene loaded = everything_scene();
+  for (const Isa isa : available_isas()) {
+    RenderSettings settings = render_settings(IntegratorKind::light, 256, 4, 6);
+    settings.isa = isa;
+    const Film aimed = render(loaded.scene, settings).film;
+    settings.is_reordering = false;
+    EXPECT_EQ(differing_pixels(aimed, render(loaded.scene, settings).film), 0) << isa_name(isa);
+  }
+}
+
+TEST(Bits, WideKernelsFollowTheScalarOneSampleBySample) {
+  // The same random numbers: what is left is rounding, which now and then turns a hit into a miss.
+  const LoadedScene loaded = everything_scene();
+  for (const Method& method : methods) {
+    RenderSettings settings = render_settings(method.kind, 64, 4, 8, method.heuristic);
+    settings.isa = Isa::scalar;
+    const Film scalar = render(loaded.scene, settings).film;
+    for (const Isa isa : available_isas()) {
+      settings.isa = isa;
+      const Film wide = render(loaded.scene, settings).film;
+      int different = 0;
+      for (int y = 0; y < wide.height(); ++y)
+        for (int x = 0; x < wide.width(); ++x)
+          different += std::abs(wide.at(x, y).mean.g - scalar.at(x, y).mean.g) >
+                       1e-4 * (1e-3 + scalar.at(x, y).mean.g);
+      EXPECT_LE(different, 20) << "of 4096 pixels: " << method.name << ", " << isa_name(isa);
+      EXPECT_LT(relative_difference_of_means(wide, scalar), 2e-6) << method.name << ", " << isa_name(isa);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace etendue
