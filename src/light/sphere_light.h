@@ -33,7 +33,10 @@ class SphereLights {
     const F sin_ratio_sq = min(sin_theta_sq / cone.sin_max_sq, F(1));
     const F sin_max = sqrt(cone.sin_max_sq);
     const F cos_center = sin_ratio_sq * sin_max + cos_theta * sqrt(F(1) - sin_ratio_sq);
-    const F sin_center = sqrt(max(F(1) - cos_center * cos_center, F(0)));
+    // sin(asin(ratio) - theta) as a quotient: from the cosine, points below a receiver that all but touches the sphere
+    // would lie on a few rings.
+    const F sin_center = sqrt(sin_ratio_sq) * (F(1) - cone.sin_max_sq) /
+                         (cos_theta + sqrt(max(cone.sin_max_sq - sin_theta_sq, F(0x1p-60f))));
     F sine, cosine;
     sincos_turns(u_cone.y, sine, cosine);
     const Vec3<F> ng =

@@ -28,7 +28,7 @@ TEST(Coverage, StudentIntervalsOverReplicatesHoldTheExactValueInTheirShareOfPixe
       for (const int replicates : {4, 16}) {
         // BSDF sampling counts hits: over few Sobol samples the counts take so few values that 4 of them are
         // far from normal (64 samples: 92 % are covered).
-        const int samples = kind == IntegratorKind::direct ? 1024 : 64;
+        const int samples = kind == IntegratorKind::direct ? 512 : 64;
         const Film film =
             render(loaded.scene, render_settings(kind, samples * replicates, replicates, 31)).film;
         int covered = 0;

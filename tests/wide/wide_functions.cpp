@@ -1,0 +1,219 @@
+// The table of wide functions; built once for each instruction set, like the kernels.
+#include "wide/wide_functions.h"
+
+#include "base/frame.h"
+#include "base/warp.h"
+#include "integrator/light_sampling.h"
+#include "integrator/mis_weights.h"
+
+#include <iterator>
+
+namespace etendue {
+
+namespace {
+
+using F = NativeLanes;
+using I = Int<F>;
+using U = UInt<F>;
+using M = Mask<F>;
+
+/// One packet: the inputs as they are taken, one after the other, and the outputs likewise.
+class Packet {
+ public:
+  Packet(const std::uint32_t* const* in, std::uint32_t* const* out, int i) : in_(in), out_(out), i_(i) {}
+
+  U word() { return load_lanes<U>(*in_++ + i_); }
+  F real() { return bits_as_float(word()); }
+  Vec2<U> words() {
+    const U x = word();
+    return {x, word()};
+  }
+  Vec2<F> square() {
+    const F x = real();
+    return {x, real()};
+  }
+  Vec3<F> vec() {
+    const F x = real(), y = real();
+    return {x, y, real()};
+  }
+
+  void give(const U& v) { store_lanes(*out_++ + i_, v); }
+  void give(const F& v) { give(float_as_bits(v)); }
+  void give(const Vec2<F>& v) { give(v.x), give(v.y); }
+  void give(const Vec3<F>& v) { give(v.x), give(v.y), give(v.z); }
+  void give(const Color<F>& c) { give(c.r), give(c.g), give(c.b); }
+
+ private:
+  const std::uint32_t* const* in_;
+  std::uint32_t* const* out_;
+  int i_;
+};
+
+/// Body(scene, packet) for each packet.
+template <auto body>
+void run(const Scene& scene, const std::uint32_t* const* in, std::uint32_t* const* out, int count) {
+  for (int i = 0; i < count; i += lane_count_v<F>) {
+    Packet packet(in, out, i);
+    body(scene, packet);
+  }
+}
+
+M every_lane() { return less(I(-1), I(0)); }
+
+template <SamplerKind kind>
+void sample(const Scene&, Packet& p) {
+  const U lo = p.word(), hi = p.word(), index = p.word();
+  for (const std::uint32_t pair : {0u, 2u}) {
+    const Vec2<U> u = sample_2d<F>(kind, lo, hi, index, pair);
+    p.give(u.x), p.give(u.y);
+  }
+}
+
+void word_multiply_high(const Scene&, Packet& p) {
+  const U a = p.word(), b = p.word();
+  p.give(mul_hi(a, b));
+}
+void word_less(const Scene&, Packet& p) {
+  const U a = p.word(), b = p.word();
+  p.give(as_uint(select(less(a, b), I(1), I(0))));
+}
+void word_hash(const Scene&, Packet& p) { p.give(hash32(p.word())); }
+void unit_float(const Scene&, Packet& p) { p.give(to_unit_float(p.word())); }
+void truncation(const Scene&, Packet& p) { p.give(as_uint(to_int(p.real()))); }
+
+void exponential(const Scene&, Packet& p) { p.give(etendue::exp(p.real())); }
+void logarithm(const Scene&, Packet& p) { p.give(etendue::log(p.real())); }
+void power(const Scene&, Packet& p) {
+  const F x = p.real(), y = p.real();
+  p.give(pow_positive(x, y));
+}
+void sine_and_cosine(const Scene&, Packet& p) {
+  F sine, cosine;
+  sincos_turns(p.real(), sine, cosine);
+  p.give(sine), p.give(cosine);
+}
+
+void triangle(const Scene&, Packet& p) { p.give(square_to_triangle(p.square())); }
+void cosine_hemisphere(const Scene&, Packet& p) { p.give(square_to_cosine_hemisphere(p.square())); }
+void cosine_hemisphere_pdf(const Scene&, Packet& p) { p.give(cosine_hemisphere_pdf_solid_angle(p.real())); }
+void power_cosine(const Scene&, Packet& p) {
+  const Vec2<F> u = p.square();
+  p.give(square_to_power_cosine(u, p.real()));
+}
+void power_cosine_pdf(const Scene&, Packet& p) {
+  const F cosine = p.real();
+  p.give(power_cosine_pdf_solid_angle(cosine, p.real()));
+}
+void uniform_cone(const Scene&, Packet& p) {
+  const Vec2<F> u = p.square();
+  p.give(square_to_uniform_cone(u, p.real()));
+}
+void uniform_cone_pdf(const Scene&, Packet& p) { p.give(uniform_cone_pdf_solid_angle(p.real())); }
+void uniform_sphere(const Scene&, Packet& p) { p.give(square_to_uniform_sphere(p.square())); }
+
+void frame(const Scene&, Packet& p) {
+  const Frame<F> frame(p.vec());
+  const Vec3<F> v = p.vec();
+  p.give(frame.s), p.give(frame.t), p.give(frame.local_from_world(v)), p.give(frame.world_from_local(v));
+}
+
+void filter_offset(const Scene& scene, Packet& p) { p.give(scene.filter.sample_offset_px(p.real())); }
+void camera_ray(const Scene& scene, Packet& p) {
+  const Vec2<F> at = p.square();
+  const CameraRay<F> ray = scene.camera.ray(at.x, at.y);
+  p.give(ray.origin), p.give(ray.direction), p.give(ray.t_near), p.give(ray.t_far);
+}
+void smooth_normal(const Scene& scene, Packet& p) {
+  const I geometry = as_int(p.word()), primitive = as_int(p.word());
+  p.give(interpolate_normal<F>(scene.geometry, geometry, primitive, p.square(), every_lane()));
+}
+
+template <int material>
+void bsdf_eval(const Scene& scene, Packet& p) {
+  const Vec3<F> wo = p.vec(), wi = p.vec();
+  std::visit([&](const auto& bsdf) { p.give(bsdf.eval_(wo, wi)); }, scene.materials[material]);
+}
+template <int material>
+void bsdf_pdf(const Scene& scene, Packet& p) {
+  const Vec3<F> wo = p.vec(), wi = p.vec();
+  std::visit([&](const auto& bsdf) { p.give(bsdf.pdf_solid_angle_(wo, wi)); }, scene.materials[material]);
+}
+template <int material>
+void bsdf_sample(const Scene& scene, Packet& p) {
+  const Vec3<F> wo = p.vec();
+  const Vec2<F> u_bsdf = p.square();
+  std::visit([&](const auto& bsdf) { p.give(bsdf.sample_(wo, u_bsdf).wi_local); }, scene.materials[material]);
+}
+
+void light_position(const Scene& scene, Packet& p) {
+  const I light = as_int(p.word());
+  const Vec3<F> reference = p.vec();
+  const LightPoint<F> point =
+      scene.lights.sample_position<F>(scene.geometry, light, reference, p.words(), every_lane());
+  p.give(point.position), p.give(point.ng), p.give(point.ns);
+}
+void light_pdf(const Scene& scene, Packet& p) {
+  const I light = as_int(p.word());
+  const Vec3<F> reference = p.vec();
+  const LightPoint<F> point =
+      scene.lights.sample_position<F>(scene.geometry, light, reference, p.words(), every_lane());
+  p.give(point.pdf_area);
+  p.give(scene.lights.pdf_area<F>(light, reference, point.position, point.ng, every_lane()));
+}
+void lights_sample(const Scene& scene, Packet& p) {
+  const Vec3<F> reference = p.vec();
+  const LightSample<F> sample = sample_lights<F>(scene, reference, p.words(), every_lane());
+  p.give(sample.wi), p.give(sample.radiance_over_pdf), p.give(sample.pdf_solid_angle);
+}
+
+template <Combination combination>
+void weight(const Scene&, Packet& p) {
+  const F own = p.real(), other = p.real();
+  p.give(mis_weight(combination, own, other));
+}
+
+constexpr WideFunction functions[]{
+    {"sample_2d independent", 3, 4, Words::integers, run<sample<SamplerKind::independent>>},
+    {"sample_2d sobol", 3, 4, Words::integers, run<sample<SamplerKind::sobol>>},
+    {"mul_hi", 2, 1, Words::integers, run<word_multiply_high>},
+    {"less", 2, 1, Words::integers, run<word_less>},
+    {"hash32", 1, 1, Words::integers, run<word_hash>},
+    {"to_unit_float", 1, 1, Words::integers, run<unit_float>},
+    {"to_int", 1, 1, Words::integers, run<truncation>},
+    {"exp", 1, 1, Words::floats, run<exponential>},
+    {"log", 1, 1, Words::floats, run<logarithm>},
+    {"pow_positive", 2, 1, Words::floats, run<power>},
+    {"sincos_turns", 1, 2, Words::floats, run<sine_and_cosine>},
+    {"square_to_triangle", 2, 2, Words::floats, run<triangle>},
+    {"square_to_cosine_hemisphere", 2, 3, Words::floats, run<cosine_hemisphere>},
+    {"cosine_hemisphere_pdf", 1, 1, Words::floats, run<cosine_hemisphere_pdf>},
+    {"square_to_power_cosine", 3, 3, Words::floats, run<power_cosine>},
+    {"power_cosine_pdf", 2, 1, Words::floats, run<power_cosine_pdf>},
+    {"square_to_uniform_cone", 3, 3, Words::floats, run<uniform_cone>},
+    {"uniform_cone_pdf", 1, 1, Words::floats, run<uniform_cone_pdf>},
+    {"square_to_uniform_sphere", 2, 3, Words::floats, run<uniform_sphere>},
+    {"Frame", 6, 12, Words::floats, run<frame>},
+    {"sample_offset_px", 1, 1, Words::floats, run<filter_offset>},
+    {"Camera::ray", 2, 8, Words::floats, run<camera_ray>},
+    {"interpolate_normal", 4, 3, Words::floats, run<smooth_normal>},
+    {"Diffuse::eval_", 6, 3, Words::floats, run<bsdf_eval<0>>},
+    {"Diffuse::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<0>>},
+    {"Diffuse::sample_", 5, 3, Words::floats, run<bsdf_sample<0>>},
+    {"Phong::eval_", 6, 3, Words::floats, run<bsdf_eval<1>>},
+    {"Phong::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<1>>},
+    {"Phong::sample_", 5, 3, Words::floats, run<bsdf_sample<1>>},
+    {"Lights::sample_position", 6, 9, Words::floats, run<light_position>},
+    {"Lights::pdf_area", 6, 2, Words::floats, run<light_pdf>},
+    {"sample_lights", 5, 7, Words::floats, run<lights_sample>},
+    {"mis_weight balance", 2, 1, Words::floats, run<weight<Combination::balance>>},
+    {"mis_weight power", 2, 1, Words::floats, run<weight<Combination::power>>},
+};
+
+}  // namespace
+
+}  // namespace etendue
+
+extern "C" __attribute__((visibility("default"))) etendue::WideFunctions etendue_wide_functions();
+etendue::WideFunctions etendue_wide_functions() {
+  return {etendue::functions, std::size(etendue::functions)};
+}
