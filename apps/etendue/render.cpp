@@ -3,10 +3,8 @@
 #include <sys/resource.h>
 
 #include <atomic>
-#include <cerrno>
 #include <csignal>
-#include <cstring>
-#include <fstream>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,8 +12,10 @@
 #include "base/hash.h"
 #include "commands.h"
 #include "film/image_file.h"
+#include "film/temporary_file.h"
 #include "progress.h"
 #include "render/render.h"
+#include "replay.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
 
@@ -26,7 +26,7 @@ namespace {
 struct Options {
   std::string scene_file;
   std::vector<std::string> outputs;
-  std::string integrator, sampler, isa, dialect, stats_file;
+  std::string integrator, sampler, isa, dialect, stats_file, replay;
   std::optional<int> samples_per_pixel, replicates;
   std::uint64_t seed = 0;
   int threads = 0;
@@ -55,6 +55,14 @@ RenderSettings settings_for(const Options& options, const LoadedScene& loaded) {
   if (settings.samples_per_pixel < 1)
     throw InputError(fmt::format("--spp {}: at least 1 sample a pixel is needed", settings.samples_per_pixel));
   settings.replicates = options.replicates.value_or(default_replicates(settings.samples_per_pixel));
+  if (settings.replicates < 1)
+    throw InputError(fmt::format("--replicates {}: at least 1 is needed", settings.replicates));
+  if (settings.samples_per_pixel % settings.replicates != 0)
+    throw InputError(fmt::format("--replicates {}: {} samples a pixel cannot be split into {} equal parts\n"
+                                 "choose a number that divides {}, or take --spp {}",
+                                 settings.replicates, settings.samples_per_pixel, settings.replicates,
+                                 settings.samples_per_pixel,
+                                 (settings.samples_per_pixel / settings.replicates + 1) * std::int64_t(settings.replicates)));
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.isa = options.isa.empty() ? available_isas().back() : isa_from_name(options.isa);
@@ -85,6 +93,13 @@ Image to_image(const Film& film) {
       for (std::size_t c = 0; c < values.size(); ++c) image.channels[c].values[at] = float(values[c]);
     }
   return image;
+}
+
+std::int64_t count_rendered(const Film& film) {
+  std::int64_t count = 0;
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) count += film.at(x, y).count > 0;
+  return count;
 }
 
 /// Of the scene file's text: to tell whether two images are of one scene.
@@ -133,30 +148,45 @@ nlohmann::ordered_json stats(const Options& options, const RenderSettings& setti
 }
 
 void write_text_file(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  if (!out) throw InputError(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+  TemporaryFile out(file);
+  std::fwrite(text.data(), 1, text.size(), out.stream());
+  out.commit();
 }
 
 void warn(const Options& options, const std::vector<std::string>& warnings) {
   if (warnings.empty()) return;
-  if (options.is_strict) throw InputError(fmt::format("{}\n  (--strict makes warnings errors)", fmt::join(warnings, "\n")));
+  if (options.is_strict) throw InputError(fmt::format("{}\n--strict makes warnings errors", fmt::join(warnings, "\n")));
   if (options.is_quiet) return;
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 }
 
-void report_invalid(const RenderResult& result) {
+/// The command line that computes the same samples as this one, for one of them.
+std::string replay_command(const Options& options, const InvalidSample& sample) {
+  std::string command = "etendue render " + options.scene_file;
+  const auto add = [&](std::string_view option, const auto& value) { command += fmt::format(" {} {}", option, value); };
+  if (!options.integrator.empty()) add("--integrator", options.integrator);
+  if (!options.sampler.empty()) add("--sampler", options.sampler);
+  if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
+  if (options.replicates) add("--replicates", *options.replicates);
+  if (options.seed != 0) add("--seed", options.seed);
+  if (!options.dialect.empty()) add("--dialect", options.dialect);
+  add("--replay", fmt::format("{},{},{},{}", sample.x, sample.y, sample.replicate, sample.index));
+  return command;
+}
+
+void report_invalid(const Options& options, const RenderResult& result) {
   if (result.counts.invalid_samples == 0) return;
-  fmt::print(stderr, "warning: {} samples were not finite or negative; each counts as 0 in its pixel\n",
-             result.counts.invalid_samples);
+  fmt::print(stderr, "warning: {} of {} samples were not finite or negative; each counts as 0 in its pixel\n",
+             result.counts.invalid_samples, result.counts.samples);
   for (const InvalidSample& sample : result.invalid)
     fmt::print(stderr, "  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y,
                sample.replicate, sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
+  fmt::print(stderr, "to see how the first of them came about:\n  {}\n", replay_command(options, result.invalid.front()));
 }
 
 int run(const Options& options) {
   for (const std::string& output : options.outputs) check_writable(output);
+  if (!options.stats_file.empty()) check_destination(options.stats_file);
   const std::optional<Dialect> dialect =
       options.dialect.empty() ? std::nullopt : std::optional(dialect_from_name(options.dialect));
   const SceneDesc description = read_nori_xml(options.scene_file, dialect);
@@ -167,6 +197,11 @@ int run(const Options& options) {
   settings.integrator = integrator_for(options, loaded, unread);
   for (const UnreadKey& key : unread) loaded.warnings.push_back(key.message);
   warn(options, loaded.warnings);
+  if (!options.replay.empty()) {
+    const SampleId sample = sample_id_from_text(options.replay);
+    fmt::print("{}", describe(loaded.scene, sample, replay(loaded.scene, settings, sample)));
+    return done;
+  }
   const int threads = options.threads > 0 ? options.threads : available_threads();
   if (!options.is_quiet)
     fmt::print(stderr, "{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n",
@@ -179,7 +214,7 @@ int run(const Options& options) {
     Progress progress("render", options.is_quiet);
     return render(loaded.scene, settings, [&](double fraction) { progress.update(fraction); }, &stop_requested);
   }();
-  report_invalid(result);
+  report_invalid(options, result);
 
   Image image = to_image(result.film);
   image.metadata = {{"scene", options.scene_file},
@@ -190,15 +225,19 @@ int run(const Options& options) {
                     {"integrator", std::string(integrator_name(settings.integrator.kind))},
                     {"sampler", std::string(sampler_name(loaded.scene.sampler))},
                     {"software", "Etendue " ETENDUE_VERSION}};
+  const std::int64_t pixels = std::int64_t(image.width) * image.height, rendered = count_rendered(result.film);
+  if (result.is_interrupted) image.metadata.emplace_back("pixelsNotRendered", std::to_string(pixels - rendered));
   for (const std::filesystem::path output : options.outputs)
     output.extension() == ".png" ? write_png(output, image) : write_exr(output, image);
   if (!options.stats_file.empty())
     write_text_file(options.stats_file,
                     stats(options, settings, description, loaded, result, threads).dump(2) + "\n");
   if (!options.is_quiet)
-    fmt::print(stderr, "{} in {}: {:.1f} million samples a second\n",
-               result.is_interrupted ? "interrupted, saved what was done" : "done", duration_text(result.seconds),
-               1e-6 * double(result.counts.samples) / result.seconds);
+    fmt::print(stderr, "{} in {}: {:.1f} million samples a second\n", result.is_interrupted ? "interrupted" : "done",
+               duration_text(result.seconds), 1e-6 * double(result.counts.samples) / result.seconds);
+  if (result.is_interrupted && !options.is_quiet)
+    fmt::print(stderr, "saved {} of {} pixels; the others have radiance 0 and a standard error that is not a number\n",
+               rendered, pixels);
   return result.is_interrupted ? interrupted : done;
 }
 
@@ -210,7 +249,6 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("SCENE", options->scene_file, "Scene file (XML of the Nori family)")->required();
   command->add_option("-o,--output", options->outputs,
                       "Image to write, .exr (radiance and its standard error) or .png (sRGB); may be repeated")
-      ->required()
       ->allow_extra_args(false);
   command->add_option("--integrator", options->integrator, "Instead of the file's; see etendue info");
   command->add_option("--sampler", options->sampler, "Instead of the file's: independent or sobol");
@@ -218,16 +256,25 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--replicates", options->replicates,
                       "Independent parts that the samples of a pixel are split into, from which its error is "
                       "estimated; must divide --spp [largest divisor up to 8]");
-  command->add_option("--seed", options->seed, "Another seed: other random numbers")->capture_default_str();
+  command->add_option("--seed", options->seed, "Another seed: other random numbers")
+      ->capture_default_str()
+      ->check([](const std::string& text) {  // CLI11 would wrap a negative number around.
+        return text.starts_with('-') ? fmt::format("{} is negative; expected a whole number from 0 on", text) : "";
+      });
   command->add_option("--threads", options->threads, "Threads; 0: all cores")->capture_default_str()->check(CLI::Range(0, 4096));
   command->add_option("--isa", options->isa, "Instruction set: scalar, v2, v3 or v4 [the widest here]");
   command->add_option("--stats", options->stats_file, "JSON file for settings, times and counts");
   command->add_option("--dialect", options->dialect, "Read the scene as nori-2012, nori-eth or nori");
-  command->add_flag("--quiet", options->is_quiet, "No progress, no warnings");
+  command->add_option("--replay", options->replay,
+                      "X,Y,REPLICATE,SAMPLE: compute only this sample, and print each step of it");
+  command->add_flag("--quiet", options->is_quiet, "No progress and no warnings about the scene; bad samples are still reported");
   command->add_flag("--strict", options->is_strict, "Warnings, such as an unknown key, are errors");
   command->add_flag("--sample-order", options->is_in_sample_order,
                     "Trace shadow rays in sample order, not aimed: slower, the same image");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, &exit_code] {
+    if (options->outputs.empty() && options->replay.empty()) throw CLI::RequiredError("--output");
+    exit_code = run(*options);
+  });
 }
 
 }  // namespace etendue::app

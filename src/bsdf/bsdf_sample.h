@@ -1,7 +1,7 @@
 // What sampling a BSDF gives.
 #pragma once
 
-#include "base/color.h"
+#include "base/lane_vec.h"
 #include "base/simd_math.h"
 #include "base/vec.h"
 
@@ -17,9 +17,7 @@ struct BsdfSample {
 
 template <class F>
 BsdfSample<F> select(const Mask<F>& m, const BsdfSample<F>& a, const BsdfSample<F>& b) {
-  return {{select(m, a.wi_local.x, b.wi_local.x), select(m, a.wi_local.y, b.wi_local.y),
-           select(m, a.wi_local.z, b.wi_local.z)},
-          {select(m, a.weight.r, b.weight.r), select(m, a.weight.g, b.weight.g), select(m, a.weight.b, b.weight.b)},
+  return {select(m, a.wi_local, b.wi_local), select(m, a.weight, b.weight),
           select(m, a.pdf_solid_angle, b.pdf_solid_angle)};
 }
 

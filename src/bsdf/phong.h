@@ -46,9 +46,7 @@ struct Phong {
     const Vec3<F> around_mirror =
         mirror_frame.world_from_local(square_to_power_cosine(Vec2<F>{u_lobe, u_bsdf.y}, F(exponent)));
     const Vec3<F> around_normal = square_to_cosine_hemisphere(Vec2<F>{u_lobe, u_bsdf.y});
-    const Vec3<F> wi_local{select(is_specular, around_mirror.x, around_normal.x),
-                           select(is_specular, around_mirror.y, around_normal.y),
-                           select(is_specular, around_mirror.z, around_normal.z)};
+    const Vec3<F> wi_local = select(is_specular, around_mirror, around_normal);
     const F pdf = pdf_solid_angle_(wo_local, wi_local);
     const F cos_over_pdf = select(pdf > F(0), wi_local.z / max(pdf, F(1e-37f)), F(0));
     return {wi_local, eval_(wo_local, wi_local) * cos_over_pdf, pdf};

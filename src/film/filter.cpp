@@ -51,7 +51,9 @@ PixelFilter::PixelFilter(double radius_px, const Cumulative& cumulative) {
 }
 
 PixelFilter PixelFilter::box(double radius_px) {
-  return {radius_px, [=](double x) { return x + radius_px; }};
+  PixelFilter filter(radius_px, [=](double x) { return x + radius_px; });
+  filter.is_box_ = true;
+  return filter;
 }
 
 PixelFilter PixelFilter::tent(double radius_px) {

@@ -26,6 +26,7 @@ class PixelFilter {
   /// Offset from the pixel's centre, in pixels, for u in [0, 1).
   template <class F>
   F sample_offset_px(const F& u) const {
+    if (is_box_) return (F(2) * u - F(1)) * F(-offset_px_.front());
     const auto is_left = u < F(0.5f);
     const F tail = select(is_left, u, F(1) - u);
     const F scaled = sqrt(tail + tail) * F(float(intervals));
@@ -46,6 +47,7 @@ class PixelFilter {
   /// Quantiles of the left half, -radius to 0, at t = sqrt(2 u) = i / intervals: evenly spaced in t, they stand close
   /// enough in the tails, where filters end in a slope. One more 0 follows, for the upper neighbour of t = 1.
   std::vector<float> offset_px_;
+  bool is_box_ = false;  ///< The inverse is a line: no table is needed.
 };
 
 /// Throws InputError for an unknown filter (with the known ones) or a parameter out of range.

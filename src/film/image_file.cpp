@@ -1,10 +1,10 @@
 #include "film/image_file.h"
 
 #include "base/error.h"
+#include "film/temporary_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace etendue {
 
@@ -22,16 +22,7 @@ void check_writable(const std::filesystem::path& file) {
         "layers) "
         "or .png (8-bit sRGB)",
         file.string(), ending.empty() ? "a name without an ending" : fmt::format("the ending '{}'", ending)));
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error))
-    throw InputError(fmt::format("{}: is a folder; give the name of a file", file.string()));
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, error))
-    throw InputError(fmt::format("{}: the folder {} does not exist; make it first: mkdir -p {}",
-                                 file.string(), folder.string(), folder.string()));
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
-    throw InputError(
-        fmt::format("{}: no permission to write in the folder {}", file.string(), folder.string()));
+  check_destination(file);
 }
 
 }  // namespace etendue

@@ -19,6 +19,19 @@ namespace {
 
 }  // namespace
 
+void check_destination(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error))
+    throw InputError(fmt::format("{}: is a folder; give the name of a file", file.string()));
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, error))
+    throw InputError(fmt::format("{}: the folder {} does not exist; make it first: mkdir -p {}",
+                                 file.string(), folder.string(), folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(
+        fmt::format("{}: no permission to write in the folder {}", file.string(), folder.string()));
+}
+
 TemporaryFile::TemporaryFile(const std::filesystem::path& destination) : destination_(destination) {
   static std::atomic<unsigned> serial{0};
   path_ = destination_;

@@ -6,6 +6,10 @@
 
 namespace etendue {
 
+/// Throws InputError unless a TemporaryFile can stand beside `file` and be renamed to it, as far as can be told
+/// without trying: asked before long work, not after.
+void check_destination(const std::filesystem::path& file);
+
 /// Open for writing in the folder of `destination` under a name of its own; renamed to `destination` by
 /// commit, removed if that is not reached. All members but the destructor throw InputError with the path and
 /// the reason.

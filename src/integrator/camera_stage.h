@@ -21,11 +21,11 @@ void camera_rays(const Scene& scene, SampleBlock& block) {
     const F x_px = to_float(load_lanes<Int<F>>(&block.pixel_x[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.x);
     const F y_px = to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
     const CameraRay<F> ray = scene.camera.ray(x_px, y_px);
-    store_lanes(block.ray_origin, i, ray.origin);
-    store_lanes(block.ray_direction, i, ray.direction);
-    store_lanes(&block.ray_t_near[i], ray.t_near);
-    store_lanes(&block.ray_t_far[i], ray.t_far);
-    store_lanes(&block.ray_is_active[i], Int<F>(-1));
+    store_lanes(block.camera_ray.origin, i, ray.origin);
+    store_lanes(block.camera_ray.direction, i, ray.direction);
+    store_lanes(&block.camera_ray.t_near[i], ray.t_near);
+    store_lanes(&block.camera_ray.t_far[i], ray.t_far);
+    store_lanes(&block.camera_ray.is_active[i], Int<F>(-1));
   }
   block.camera_rays += block.count;
   block.clock.finish(Stage::camera_rays);

@@ -10,12 +10,19 @@ namespace etendue {
 /// A sample of the light that arrives at a reference point, visibility left out.
 template <class F>
 struct LightSample {
-  Vec3<F> position;     ///< On the light, world (m).
-  Vec3<F> wi;           ///< Unit, from the reference point to the light.
-  Color<F> radiance_over_pdf;  ///< Emitted radiance times cos(theta'') / distance^2 over the density per area; the
-                               ///< cosine at the receiver is left to the caller. 0: the light faces away.
-  F pdf_solid_angle;    ///< 1/sr at the reference point, the probability of the light included; 0: no sample.
-  Int<F> aim;           ///< Near values: near points of one light.
+  Vec3<F> position;  ///< On the light, world (m).
+  Vec3<F> wi;        ///< Unit, from the reference point to the light.
+  /// Emitted radiance times cos(theta'') / distance^2 over the density per area; the cosine at the receiver is left to
+  /// the caller.
+  Color<F> radiance_over_pdf;
+  F pdf_area;            ///< 1/m^2, the probability of the light included.
+  F distance_sq;         ///< m^2
+  F cos_theta_light;     ///< Between the light's geometric normal and the direction to the reference point.
+  Mask<F> is_facing;     ///< Elsewhere the light faces away, and there is no sample.
+  Int<F> light, piece;   ///< Near samples of one light have near pieces.
+
+  /// The density of `wi` (1/sr) at the reference point.
+  F pdf_solid_angle() const { return solid_angle_from_area(pdf_area, distance_sq, cos_theta_light); }
 };
 
 /// Area sampling of the lights: uniform choice of a light, a point on it by `sample_position`, the geometry term
@@ -30,17 +37,22 @@ LightSample<F> sample_lights(const Scene& scene, const Vec3<F>& reference, const
 
   const Vec3<F> to_light = point.position - reference;
   const F distance_sq = length_sq(to_light);
-  const Vec3<F> wi = to_light * (F(1) / sqrt(distance_sq));
+  const F inv_distance = F(1) / sqrt(distance_sq);
+  const Vec3<F> wi = to_light * inv_distance;
   const F cos_theta_light = -dot(point.ng, wi);
-  const Mask<F> is_facing =
-      mask_and(m, cos_theta_light > F(0), dot(point.ns, wi) < F(0), point.pdf_area > F(0));
+  const Mask<F> is_facing = mask_and(m, cos_theta_light > F(0), dot(point.ns, wi) < F(0), point.pdf_area > F(0));
 
-  const F geometry_term = cos_theta_light / distance_sq;
+  const F geometry_term = cos_theta_light * inv_distance * inv_distance;
   const F pdf_area = choice.pmf * point.pdf_area;
-  const F scale = select(is_facing, geometry_term / pdf_area, F(0));
-  const F pdf_solid_angle = select(is_facing, solid_angle_from_area(pdf_area, distance_sq, cos_theta_light), F(0));
-  return {point.position, wi, scene.lights.radiance<F>(choice.light, m) * scale, pdf_solid_angle,
-          choice.light * Int<F>(light_pieces) + point.piece};
+  return {.position = point.position,
+          .wi = wi,
+          .radiance_over_pdf = scene.lights.radiance<F>(choice.light, m) * (geometry_term / pdf_area),
+          .pdf_area = pdf_area,
+          .distance_sq = distance_sq,
+          .cos_theta_light = cos_theta_light,
+          .is_facing = is_facing,
+          .light = choice.light,
+          .piece = point.piece};
 }
 
 /// The density (1/sr) with which `sample_lights` gives the direction `wi` from `reference`, which meets `light` at

@@ -15,7 +15,7 @@ namespace etendue {
 template <class F>
 void sample_lights(const Scene& scene, SampleBlock& block, Combination combination) {
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const SurfacePoint<F> surface(block, i);
+    const SurfacePoint<F> surface(scene, block.camera_ray, block.camera_hit, i);
     if (!any(surface.is_there)) {
       store_lanes(&block.shadow_is_needed[i], Int<F>(0));
       continue;
@@ -25,44 +25,54 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
 
     const Frame<F> frame(surface.ns);
     const Vec3<F> wo_local = frame.local_from_world(surface.wo), wi_local = frame.local_from_world(sample.wi);
-    const Mask<F> is_lit = mask_and(surface.is_there, sample.pdf_solid_angle > F(0), surface.reflects_towards(sample.wi));
-    Color<F> reflected{F(0), F(0), F(0)};
+    const Mask<F> is_lit = mask_and(sample.is_facing, surface.reflects_towards(sample.wi));
+    Color<F> reflected = black<F>();
     for_each_material<F>(scene.materials, surface.material, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
-      F weight = wi_local.z;
-      if (needs_both_pdfs(combination))
-        weight = weight * mis_weight(combination, select(lanes, sample.pdf_solid_angle, F(1)),
-                                     bsdf.pdf_solid_angle_(wo_local, wi_local));
-      else
-        weight = weight * mis_weight(combination, F(1), F(1));
-      const Color<F> f = bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * weight;
-      reflected = {select(lanes, f.r, reflected.r), select(lanes, f.g, reflected.g), select(lanes, f.b, reflected.b)};
+      const F weight = needs_both_pdfs(combination)
+                           ? mis_weight(combination, select(lanes, sample.pdf_solid_angle(), F(1)),
+                                        bsdf.pdf_solid_angle_(wo_local, wi_local))
+                           : mis_weight(combination, F(1), F(1));
+      const Color<F> f = bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (wi_local.z * weight);
+      reflected = select(lanes, f, reflected);
     });
 
     store_lanes(block.unshadowed, i, reflected);
     // Not "greater than 0": a NaN must reach the sum, where it is reported.
-    const Mask<F> is_dark = mask_and(reflected.r == F(0), reflected.g == F(0), reflected.b == F(0));
-    store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, mask_not(is_dark)));
+    store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, mask_not(is_black(reflected))));
     const Vec3<F> origin = surface.offset_origin();
     store_lanes(block.shadow_origin, i, origin);
     store_lanes(block.shadow_direction, i, sample.position - origin);
-    store_lanes(&block.aim[i], sample.aim);
+    store_lanes(&block.aim[i], sample.light * Int<F>(light_pieces) + sample.piece);
   }
   block.clock.finish(Stage::light_samples);
 }
 
-/// Orders the shadow rays that are needed so that a packet aims at one piece of one light: a counting sort by `aim`.
-/// Order only: results go back to the sample's place.
+/// Orders the shadow rays that are needed so that a packet goes from one part of the block's pixels to one piece of one
+/// light: a counting sort. Order only: results go back to the sample's place.
 inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
-  constexpr int most_bins = 1024;
+  // A packet is coherent where both its ends are near each other: a block of many pixels, which come in Morton order, is
+  // split into quarters and each light into few pieces; a block of one pixel, each light into many.
+  constexpr std::int32_t most_bins = 256;
+  const std::int32_t quarters = block.is_one_pixel ? 1 : 4, piece_shift = block.is_one_pixel ? 0 : 2;
+  const std::int32_t aims = scene.lights.count() * (light_pieces >> piece_shift);
   int shift = 0;
-  while (((std::int64_t(scene.lights.count()) * light_pieces - 1) >> shift) >= most_bins) ++shift;
-  std::array<std::int32_t, most_bins + 1> start{};
-  for (int i = 0; i < block.count; ++i)
-    start[std::size_t(block.aim[i] >> shift) + 1] -= block.shadow_is_needed[i];
-  for (int bin = 0; bin < most_bins; ++bin) start[bin + 1] += start[bin];
-  block.shadow_count = start[most_bins];
-  for (int i = 0; i < block.count; ++i)
-    if (block.shadow_is_needed[i]) block.order[std::size_t(start[std::size_t(block.aim[i] >> shift)]++)] = i;
+  while (((aims - 1) >> shift) >= most_bins / quarters) ++shift;
+  const std::int32_t bins_a_quarter = ((aims - 1) >> shift) + 1, used_bins = quarters * bins_a_quarter;
+
+  // Rays that are not needed go to a bin behind all others: no branch to mispredict.
+  const int quarter_size = (block.count + quarters - 1) / quarters;
+  for (std::int32_t quarter = 0; quarter < quarters; ++quarter) {
+    const int end = std::min(block.count, (quarter + 1) * quarter_size);
+    for (int i = quarter * quarter_size; i < end; ++i) {
+      const std::int32_t bin = quarter * bins_a_quarter + (block.aim[i] >> (piece_shift + shift));
+      block.aim[i] = block.shadow_is_needed[i] ? bin : used_bins;
+    }
+  }
+  std::array<std::int32_t, most_bins + 2> start{};
+  for (int i = 0; i < block.count; ++i) ++start[std::size_t(block.aim[i]) + 1];
+  for (std::int32_t bin = 0; bin < used_bins; ++bin) start[bin + 1] += start[bin];
+  block.shadow_count = start[used_bins];
+  for (int i = 0; i < block.count; ++i) block.order[std::size_t(start[std::size_t(block.aim[i])]++)] = i;
   block.clock.finish(Stage::aiming);
 }
 
@@ -93,9 +103,7 @@ void add_unshadowed(const Scene& scene, SampleBlock& block, Coherence coherence)
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
     const Mask<F> is_free = load_mask<F>(&block.shadow_is_free[i]);
     if (!any(is_free)) continue;
-    const Color<F> unshadowed = load_lanes<F>(block.unshadowed, i);
-    const Color<F> direct{select(is_free, unshadowed.r, F(0)), select(is_free, unshadowed.g, F(0)),
-                          select(is_free, unshadowed.b, F(0))};
+    const Color<F> direct = select(is_free, load_lanes<F>(block.unshadowed, i), black<F>());
     store_lanes(block.radiance, i, load_lanes<F>(block.radiance, i) + direct);
   }
   block.shadow_rays += block.shadow_count;

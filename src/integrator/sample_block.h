@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "base/color.h"
-#include "base/simd.h"
+#include "base/mask.h"
 #include "base/vec.h"
 
 namespace etendue {
@@ -64,38 +64,46 @@ class StageClock {
   std::array<double, stage_names.size()> seconds_{};
 };
 
+/// Rays as they are cast.
+struct RayColumns {
+  Vec3Column origin, direction;  ///< The direction is unit.
+  Column<float> t_near, t_far;
+  Column<std::int32_t> is_active;  ///< -1: cast it; 0: not.
+};
+
+/// What they hit; geometry -1: nothing.
+struct HitColumns {
+  Column<float> t, u, v;
+  Vec3Column ng;  ///< Not normalised.
+  Column<std::int32_t> geometry, primitive;
+};
+
 struct SampleBlock {
   int count = 0;         ///< Samples.
   int padded_count = 0;  ///< Up to whole packets of the widest kind; the surplus repeats the last sample.
+  bool is_one_pixel = false;
 
   // Who the sample is.
   Column<std::int32_t> pixel_x, pixel_y;
   Column<std::uint32_t> stream_lo, stream_hi, index;
 
-  // The ray being cast and what it hit; geometry -1: nothing.
-  Vec3Column ray_origin, ray_direction;
-  Column<float> ray_t_near, ray_t_far;
-  Column<std::int32_t> ray_is_active;
-  Column<float> hit_t, hit_u, hit_v;
-  Vec3Column hit_ng;
-  Column<std::int32_t> hit_geometry, hit_primitive;
-
-  // The surface that the camera sees: what light and BSDF samples start from; material -1: none.
-  Vec3Column position, ng, ns, wo;
-  Column<float> clearance;  ///< How far off the surface rays that leave it start (m).
-  Column<std::int32_t> material;
-
-  // A BSDF sample: what its ray brings is weighted by `throughput`.
-  ColorColumn throughput;
-  Column<float> pdf_bsdf;  ///< 1/sr
+  // What the camera sees: the surface that light and BSDF samples start from.
+  RayColumns camera_ray;
+  HitColumns camera_hit;
 
   // A light sample: its shadow segment (t from 0 to 1), and what it adds where nothing hides it.
   Vec3Column shadow_origin, shadow_direction;
   ColorColumn unshadowed;
   Column<std::int32_t> shadow_is_needed, shadow_is_free;
-  Column<std::int32_t> aim;    ///< light * light_pieces + piece
+  Column<std::int32_t> aim;  ///< light * light_pieces + piece; after aiming, the bin.
   Column<std::int32_t> order;  ///< Of tracing: sample numbers, then -1.
   int shadow_count = 0;
+
+  // A BSDF sample: what its ray brings is weighted by `throughput`.
+  RayColumns bsdf_ray;
+  HitColumns bsdf_hit;
+  ColorColumn throughput;
+  Column<float> pdf_bsdf;  ///< 1/sr
 
   ColorColumn radiance;
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/color.h"
+#include "base/lookup_table.h"
 #include "light/light_point.h"
 #include "light/mesh_light.h"
 #include "light/rectangle_light.h"
@@ -25,7 +26,7 @@ class Lights {
   /// Each returns the new light's id.
   std::int32_t add(const Colorf& radiance, std::string name, LightKind kind, std::int32_t row);
 
-  std::int32_t count() const { return std::int32_t(kind_.size()); }
+  std::int32_t count() const { return kind_.size(); }
   const std::string& name(std::int32_t light) const { return names_[std::size_t(light)]; }
 
   MeshLights meshes;
@@ -35,9 +36,8 @@ class Lights {
   /// W/(m^2 sr); lanes outside of `m` may hold any light.
   template <class F>
   Color<F> radiance(const Int<F>& light, const Mask<F>& m) const {
-    const Int<F> at = select(m, light, Int<F>(0)) * Int<F>(3);
-    const float* rgb = &radiance_[0].r;
-    return {gather(rgb, at), gather(rgb + 1, at), gather(rgb + 2, at)};
+    const Int<F> safe = select(m, light, Int<F>(0));
+    return {red_.at(safe), green_.at(safe), blue_.at(safe)};
   }
 
   /// A point on the light for a receiver at `reference`; u are 32-bit fractions, so that choosing among many triangles
@@ -45,7 +45,7 @@ class Lights {
   template <class F>
   LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& light, const Vec3<F>& reference,
                                 const Vec2<UInt<F>>& u_light, const Mask<F>& m) const {
-    LightPoint<F> point{};
+    LightPoint<F> point = no_light_point<F>();
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       point = select(lanes, table.template sample_position<F>(geometry, row, reference, u_light, lanes), point);
     });
@@ -67,8 +67,8 @@ class Lights {
   template <class F, class Function>
   void for_each_kind(const Int<F>& light, const Mask<F>& m, Function&& f) const {
     const Int<F> safe = select(m, light, Int<F>(0));
-    const Int<F> kind = gather(kind_.data(), safe);
-    const Int<F> row = gather(row_.data(), safe);
+    const Int<F> kind = kind_.at(safe);
+    const Int<F> row = row_.at(safe);
     for_each_unique<F>(kind, m, [&](std::int32_t which, const Mask<F>& lanes) {
       const Int<F> safe_row = select(lanes, row, Int<F>(0));
       switch (LightKind(which)) {
@@ -79,8 +79,8 @@ class Lights {
     });
   }
 
-  std::vector<std::int32_t> kind_, row_;  ///< Which table, and the row in it.
-  std::vector<Colorf> radiance_;
+  LookupTable<std::int32_t> kind_, row_;     ///< Which table, and the row in it.
+  LookupTable<float> red_, green_, blue_;  ///< Radiance.
   std::vector<std::string> names_;
 };
 

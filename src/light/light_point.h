@@ -1,6 +1,7 @@
 // A sampled point on a light, and the change between densities per area and per solid angle.
 #pragma once
 
+#include "base/lane_vec.h"
 #include "base/simd_math.h"
 #include "base/vec.h"
 
@@ -18,12 +19,15 @@ struct LightPoint {
 inline constexpr int light_pieces = 16;
 
 template <class F>
+LightPoint<F> no_light_point() {
+  const Vec3<F> zero{F(0), F(0), F(0)};
+  return {zero, zero, zero, F(0), Int<F>(0)};
+}
+
+template <class F>
 LightPoint<F> select(const Mask<F>& m, const LightPoint<F>& a, const LightPoint<F>& b) {
-  const auto vec = [&](const Vec3<F>& p, const Vec3<F>& q) {
-    return Vec3<F>{select(m, p.x, q.x), select(m, p.y, q.y), select(m, p.z, q.z)};
-  };
-  return {vec(a.position, b.position), vec(a.ng, b.ng), vec(a.ns, b.ns), select(m, a.pdf_area, b.pdf_area),
-          select(m, a.piece, b.piece)};
+  return {select(m, a.position, b.position), select(m, a.ng, b.ng), select(m, a.ns, b.ns),
+          select(m, a.pdf_area, b.pdf_area), select(m, a.piece, b.piece)};
 }
 
 /// Density per solid angle (1/sr) at the receiver from one per area (1/m^2) on the light.

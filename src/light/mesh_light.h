@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/lookup_table.h"
 #include "base/simd_math.h"
 #include "base/warp.h"
 #include "geometry/geometry.h"
@@ -21,14 +22,14 @@ class MeshLights {
   LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& row, const Vec3<F>& /*reference*/,
                                 const Vec2<UInt<F>>& u, const Mask<F>& m) const {
     using I = Int<F>;
-    const I first = gather(first_triangle_.data(), row), count = gather(triangle_count_.data(), row);
+    const I first = first_triangle_.at(row), count = triangle_count_.at(row);
     const I bucket = as_int(mul_hi(u.y, as_uint(count)));
     const UInt<F> fraction = u.y * as_uint(count);
     const UInt<F> threshold = gather(alias_threshold_.data(), first + bucket);
     const auto is_own = less(fraction, threshold);
     const I triangle = select(is_own, bucket, gather(alias_.data(), first + bucket));
     const F left = to_unit_float(fraction), split = to_unit_float(threshold);
-    const F stretched = select(is_own, left / max(split, F(0x1p-24f)), (left - split) / max(F(1) - split, F(0x1p-24f)));
+    const F stretched = select(is_own, left, left - split) / max(select(is_own, split, F(1) - split), F(0x1p-24f));
     const Vec2<F> u_triangle{to_unit_float(u.x), min(max(stretched, F(0)), F(0x1.fffffep-1f))};
 
     const float* corner = triangles_.data();
@@ -43,30 +44,31 @@ class MeshLights {
     point.position = origin + edge_1 * barycentric.x + edge_2 * barycentric.y;
     point.ng = normalize(cross(edge_1, edge_2));
     point.ns = point.ng;
-    const I geometry_id = gather(geometry_id_.data(), row);
-    const auto is_smooth = mask_and(m, equal(gather(geometry.has_normals.data(), geometry_id), I(1)));
+    const auto is_smooth = mask_and(m, equal(has_normals_.at(row), I(1)));
     if (any(is_smooth)) {
+      const I geometry_id = geometry_id_.at(row);
       const Vec3<F> ns = interpolate_normal<F>(geometry, geometry_id, triangle, barycentric, is_smooth);
-      point.ns = {select(is_smooth, ns.x, point.ng.x), select(is_smooth, ns.y, point.ng.y),
-                  select(is_smooth, ns.z, point.ng.z)};
+      point.ns = select(is_smooth, ns, point.ng);
     }
-    point.pdf_area = gather(pdf_area_.data(), row);
-    const F along = (to_float(triangle) + u_triangle.y) / to_float(count);
-    point.piece = to_int(along * F(float(light_pieces) * 0.999f));
+    point.pdf_area = pdf_area_.at(row);
+    const I pieces = gather(pieces_.data(), first + triangle);
+    point.piece = (pieces & I(0xff)) + to_int(u_triangle.y * to_float(pieces >> 8));
     return point;
   }
 
   /// 1 / total area
   template <class F>
   F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/, const Vec3<F>& /*ng*/) const {
-    return gather(pdf_area_.data(), row);
+    return pdf_area_.at(row);
   }
 
  private:
   // Per light.
-  std::vector<std::int32_t> geometry_id_, first_triangle_, triangle_count_;
-  std::vector<float> pdf_area_;
-  // Per triangle of all lights: the alias table, and a corner and two edges.
+  LookupTable<std::int32_t> geometry_id_, has_normals_, first_triangle_, triangle_count_;
+  LookupTable<float> pdf_area_;
+  // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first in the low
+  // byte, their number above.
+  std::vector<std::int32_t> pieces_;
   std::vector<std::uint32_t> alias_threshold_;
   std::vector<std::int32_t> alias_;
   std::vector<float> triangles_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/lookup_table.h"
 #include "base/simd_math.h"
 #include "geometry/geometry.h"
 #include "light/light_point.h"
@@ -18,7 +19,7 @@ class RectangleLights {
     const Vec3f ng = normalize(across);
     for (const Vec3f& v : {corner, edge_u, edge_v, ng}) fields_.insert(fields_.end(), {v.x, v.y, v.z});
     pdf_area_.push_back(1 / length(across));
-    return std::int32_t(pdf_area_.size()) - 1;
+    return pdf_area_.size() - 1;
   }
 
   template <class F>
@@ -32,17 +33,17 @@ class RectangleLights {
     const F x = to_unit_float(u.x), y = to_unit_float(u.y);
     const Vec3<F> ng = vec(9);
     const Int<F> piece = to_int(x * F(4)) * Int<F>(4) + to_int(y * F(4));
-    return {vec(0) + vec(3) * x + vec(6) * y, ng, ng, gather(pdf_area_.data(), row), piece};
+    return {vec(0) + vec(3) * x + vec(6) * y, ng, ng, pdf_area_.at(row), piece};
   }
 
   template <class F>
   F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/, const Vec3<F>& /*ng*/) const {
-    return gather(pdf_area_.data(), row);
+    return pdf_area_.at(row);
   }
 
  private:
   std::vector<float> fields_;  ///< Corner, two edges, normal: 12 a row.
-  std::vector<float> pdf_area_;
+  LookupTable<float> pdf_area_;
 };
 
 }  // namespace etendue

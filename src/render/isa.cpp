@@ -64,8 +64,8 @@ Isa isa_from_name(std::string_view name) {
     if (!has_isa(isa)) throw InputError(fmt::format("this machine has no '{}' instructions; see etendue info", name));
     return isa;
   }
-  throw InputError(fmt::format("unknown instruction set '{}'; {}", name,
-                               known_names(name, std::vector<std::string>(names.begin(), names.end()))));
+  throw InputError({}, fmt::format("unknown instruction set '{}'", name),
+                   known_names(name, std::vector<std::string>(names.begin(), names.end())));
 }
 
 int lane_count(Isa isa) { return kernel_for(isa).lanes; }

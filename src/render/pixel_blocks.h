@@ -25,8 +25,9 @@ class ReplicateSum {
   }
   /// The sum so far; starts anew.
   double take() {
-    double total = 0;
-    for (const double value : slot_) total += value;
+    for (int half = slots / 2; half > 0; half /= 2)
+      for (int s = 0; s < half; ++s) slot_[s] += slot_[s + half];
+    const double total = slot_[0];
     slot_.fill(0);
     return total;
   }
@@ -56,8 +57,11 @@ class PixelBlocks {
   bool next(SampleBlock& block) {
     if (y_ >= job_.y_end) return false;
     pixels_.clear();
-    for (int y = y_; y < std::min(y_ + height_, job_.y_end); ++y)
-      for (int x = x_; x < std::min(x_ + width_, job_.x_end); ++x) pixels_.push_back({x, y});
+    for (int k = 0; k < width_ * height_; ++k) {
+      const Pixel pixel{x_ + even_bits(k), y_ + even_bits(k >> 1)};
+      if (pixel.x < job_.x_end && pixel.y < job_.y_end) pixels_.push_back(pixel);
+    }
+    block.is_one_pixel = pixels_.size() == 1;
     samples_in_block_ = std::min(samples_ - first_sample_, block_capacity);
     block.count = 0;
     for (const Pixel& pixel : pixels_) fill_pixel(block, pixel);
@@ -104,6 +108,13 @@ class PixelBlocks {
   struct Pixel {
     int x, y;
   };
+
+  /// Bits 0, 2, 4 ... of a Morton number below 2^10.
+  static int even_bits(int morton) {
+    int result = 0;
+    for (int bit = 0; bit < 5; ++bit) result |= (morton >> (2 * bit) & 1) << bit;
+    return result;
+  }
 
   /// f(replicate, index of the first sample in it, count) over this block's samples of one pixel.
   template <class Function>

@@ -1,18 +1,10 @@
 // Owen-scrambled Sobol points in two dimensions, by hashing: Burley 2020, "Practical hash-based Owen scrambling".
 #pragma once
 
+#include "base/bits.h"
 #include "base/vec.h"
 
 namespace etendue {
-
-template <class U>
-U reverse_bits(U x) {
-  x = ((x >> 1) & U(0x55555555u)) | ((x & U(0x55555555u)) << 1);
-  x = ((x >> 2) & U(0x33333333u)) | ((x & U(0x33333333u)) << 2);
-  x = ((x >> 4) & U(0x0f0f0f0fu)) | ((x & U(0x0f0f0f0fu)) << 4);
-  x = ((x >> 8) & U(0x00ff00ffu)) | ((x & U(0x00ff00ffu)) << 8);
-  return (x >> 16) | (x << 16);
-}
 
 /// Owen scrambling of a number whose bits are reversed (most significant digit in bit 0): every bit is flipped by a
 /// hash of the bits below it. Constants of Vegdahl 2021, "Building a better LK hash", the short variant.

@@ -34,7 +34,8 @@ class Loader {
       throw InputError(root.location, "the scene has no shapes", "add <mesh type=\"obj\"> with a filename");
     if (lights_.count() == 0)
       throw InputError(root.location, "the scene has no light: its image would be black",
-                       "put <luminaire type=\"area\"> with a radiance inside a mesh");
+                       fmt::format("put <{} type=\"area\"> with a radiance inside a mesh or shape",
+                                   description_.dialect == Dialect::nori_2012 ? "luminaire" : "emitter"));
     const Clock::time_point start = Clock::now();
     RayCaster rays(geometry_, threads);
     const double seconds_build = seconds_since(start);
@@ -63,7 +64,7 @@ class Loader {
         else if (part.family == "sampler")
           add_sampler(part);
         else
-          throw misplaced(part, child, "rfilter, sampler");
+          throw misplaced(part, child, {"rfilter", "sampler"});
       }
     } else if (child.family == "rfilter") {
       add_filter(child);
@@ -77,7 +78,7 @@ class Loader {
       add_shape(child);
       seconds_read_ += seconds_since(start);
     } else {
-      throw misplaced(child, description_.root, "camera, integrator, mesh, rfilter, sampler, shape");
+      throw misplaced(child, description_.root, {"camera", "integrator", "mesh", "rfilter", "sampler", "shape"});
     }
   }
 
@@ -112,7 +113,7 @@ class Loader {
         once(light, part);
         light = &part;
       } else {
-        throw misplaced(part, object, "bsdf, luminaire (or emitter)");
+        throw misplaced(part, object, {"bsdf", "brdf", "emitter", "luminaire"});
       }
     }
     SurfaceIds ids;
@@ -130,9 +131,9 @@ class Loader {
     if (is_there) throw InputError(object.location, fmt::format("a second <{}>; there can be only one here", object.family));
   }
 
-  static InputError misplaced(const Object& part, const Object& parent, std::string_view expected) {
+  static InputError misplaced(const Object& part, const Object& parent, std::vector<std::string> expected) {
     return {part.location, fmt::format("<{}> has no place inside <{}>", part.family, parent.family),
-            fmt::format("expected: {}", expected)};
+            known_names(part.family, std::move(expected))};
   }
 
   std::vector<std::string> warnings() const {

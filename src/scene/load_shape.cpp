@@ -61,6 +61,9 @@ std::filesystem::path existing_file(const Parameters& parameters, const std::fil
   if (!std::filesystem::exists(file, error))
     throw InputError(parameters.location("filename"), fmt::format("'{}' is not there", parameters.text("filename")),
                      fmt::format("looked for {}; paths are relative to the scene file", file.string()));
+  if (std::filesystem::is_directory(file, error))
+    throw InputError(parameters.location("filename"), fmt::format("'{}' is a folder", parameters.text("filename")),
+                     "give the name of an OBJ file");
   return file;
 }
 
@@ -119,7 +122,9 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const std::string name = label(object, file.stem().string());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(
-          object.location, fmt::format("{} triangles of '{}' have no area and are left out", mesh.dropped_triangles, name)));
+          object.location, mesh.dropped_triangles == 1
+                               ? fmt::format("1 triangle of '{}' has no area and is left out", name)
+                               : fmt::format("{} triangles of '{}' have no area and are left out", mesh.dropped_triangles, name)));
     if (radiance && mesh.indices.empty()) throw_no_area(object, name);
     const std::int32_t id = geometry.add_mesh(mesh, ids);
     if (radiance) lights.add(*radiance, name, LightKind::mesh, lights.meshes.add(geometry, id));

@@ -66,7 +66,8 @@ struct Element {
 
   const Attribute& get(std::string_view name) const {
     if (const Attribute* attribute = find(name)) return *attribute;
-    throw InputError(location, fmt::format("<{}> lacks the attribute '{}'", tag, name));
+    throw InputError(location, fmt::format("<{}> lacks the attribute '{}'", tag, name),
+                     fmt::format("write <{} {}=\"...\">", tag, name));
   }
 
   void allow_only(std::vector<std::string> names, std::string_view hint = {}) const {
@@ -163,12 +164,16 @@ pugi::xml_node Reader::load_root() {
         throw InputError(where, fmt::format("expected </{}>, the end of the element of line {}",
                                             source_->text.substr(open->offset, open->length),
                                             line_and_column(*open).line));
-    throw InputError(where, fmt::format("not well-formed XML: {}", result.description()));
+    throw InputError(where, fmt::format("not well-formed XML: {}", result.description()),
+                     result.status == pugi::status_bad_attribute
+                         ? "is a quote missing, here or in the line before? write name=\"value\""
+                         : "");
   }
   pugi::xml_node root;
   for (const pugi::xml_node& node : document_.children()) {
     if (node.type() != pugi::node_element)
-      throw InputError(place_of(node), "text outside of the root element");
+      throw InputError(place_of(node), "text outside of the root element",
+                       "expected XML with all in one <scene> or <test>");
     if (root)
       throw InputError(place_of(node), "a second root element", "a file holds one <scene> or one <test>");
     root = node;
@@ -320,7 +325,8 @@ Property Reader::read_property(const Element& element) const {
   if (const auto* transform = std::get_if<Transform>(&property.value);
       transform && !is_invertible(*transform))
     throw InputError(property.value_location,
-                     fmt::format("the transform '{}' cannot be inverted", property.name));
+                     fmt::format("the transform '{}' cannot be inverted", property.name),
+                     "check it for a scale of 0, for equal rows or columns, and for numbers too large or too small");
   return property;
 }
 

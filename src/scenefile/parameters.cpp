@@ -147,7 +147,9 @@ Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<U
     if (parameter == plugin.parameters.end()) {
       unread.push_back({format_message(property.name_location,
                                        fmt::format("unknown key '{}' of {}", property.name, label(object)),
-                                       known_names(property.name, names_of(plugin.parameters)))});
+                                       plugin.parameters.empty()
+                                           ? "it has no keys at all; was this meant for another element?"
+                                           : known_names(property.name, names_of(plugin.parameters)))});
       continue;
     }
     if (is_stated(property.name))

@@ -67,7 +67,8 @@ T parse_single(std::string_view text, const Location& where, std::string_view ki
   const T number = parse_token<T>(tokens[0], text, where, kind);
   if (tokens.size() > 1)
     throw InputError(place_of(tokens[1], text, where),
-                     fmt::format("'{}' is too many; expected {}", tokens[1], kind));
+                     fmt::format("'{}' is one number too many; expected {}", tokens[1], kind),
+                     "decimals take a point: 1.5");
   return number;
 }
 

@@ -1,0 +1,96 @@
+#include "replay.h"
+
+#include "base/error.h"
+
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <vector>
+
+namespace etendue::app {
+
+namespace {
+
+std::string text(const Vec3f& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+std::string text(const Colorf& c) { return fmt::format("{} {} {}", c.r, c.g, c.b); }
+
+std::string light_text(const Scene& scene, std::int32_t light) {
+  return light < 0 ? "no light" : fmt::format("light '{}'", scene.lights.name(light));
+}
+
+std::string light_sample_text(const Scene& scene, const SampleTrace::LightSample& sample) {
+  const std::string_view shadow_ray = !sample.is_shadow_ray_cast ? "not cast: nothing to add"
+                                      : sample.is_visible        ? "free"
+                                                                 : "blocked";
+  return fmt::format(
+      "light sample      {}\n"
+      "  position        {} m\n"
+      "  pdf             {} 1/sr\n"
+      "  radiance / pdf  {}\n"
+      "  unshadowed      {} (with BSDF, cosine and weight)\n"
+      "  shadow ray      {}\n",
+      light_text(scene, sample.light), text(sample.position), sample.pdf_solid_angle,
+      text(sample.radiance_over_pdf), text(sample.unshadowed), shadow_ray);
+}
+
+std::string bsdf_sample_text(const Scene& scene, const SampleTrace::BsdfSample& sample) {
+  const std::string ray =
+      !sample.is_ray_cast ? "not cast: nothing to add"
+      : std::isinf(sample.distance)
+          ? "hits nothing"
+          : fmt::format("hits {} at {} m", light_text(scene, sample.light), sample.distance);
+  return fmt::format(
+      "BSDF sample\n"
+      "  direction       {}\n"
+      "  pdf             {} 1/sr\n"
+      "  throughput      {} (f cos / pdf)\n"
+      "  ray             {}\n",
+      text(sample.direction), sample.pdf_solid_angle, text(sample.throughput), ray);
+}
+
+}  // namespace
+
+SampleId sample_id_from_text(const std::string& text) {
+  std::vector<std::int64_t> numbers;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at <= end) {
+    std::int64_t number = 0;
+    const auto [stop, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || (stop != end && *stop != ',')) break;
+    numbers.push_back(number);
+    at = stop + 1;
+  }
+  constexpr std::int64_t most = 1 << 30;
+  if (at != end + 1 || numbers.size() != 4 || std::abs(numbers[0]) > most || std::abs(numbers[1]) > most)
+    throw InputError(
+        fmt::format("--replay {}: expected X,Y,REPLICATE,SAMPLE: four whole numbers from 0 on", text));
+  return {int(numbers[0]), int(numbers[1]), numbers[2], numbers[3]};
+}
+
+std::string describe(const Scene& scene, const SampleId& sample, const SampleTrace& trace) {
+  std::string all = fmt::format(
+      "pixel {},{} replicate {} sample {}\n"
+      "film              {} {} px\n"
+      "camera ray\n"
+      "  origin          {} m\n"
+      "  direction       {}\n",
+      sample.x, sample.y, sample.replicate, sample.index, trace.x_px, trace.y_px, text(trace.ray_origin),
+      text(trace.ray_direction));
+  if (trace.hit)
+    all += fmt::format(
+        "hit               shape {}, triangle {}, material {}, {}\n"
+        "  position        {} m\n"
+        "  ng              {}\n"
+        "  ns              {}\n",
+        trace.hit->geometry, trace.hit->primitive, trace.hit->material, light_text(scene, trace.hit->light),
+        text(trace.hit->position), text(trace.hit->ng), text(trace.hit->ns));
+  else
+    all += "hit               nothing\n";
+  all += fmt::format("emission seen     {}\n", text(trace.emission));
+  if (trace.light_sample) all += light_sample_text(scene, *trace.light_sample);
+  if (trace.bsdf_sample) all += bsdf_sample_text(scene, *trace.bsdf_sample);
+  return all + fmt::format("radiance          {}\n", text(trace.radiance));
+}
+
+}  // namespace etendue::app

@@ -1,0 +1,254 @@
+// What scripts and people rely on: options, files, exit codes.
+#include "film/image_file.h"
+#include "support/program.h"
+
+#include <cmath>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace etendue::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// A sphere that shines upon a square, seen from above.
+std::string scene_xml(int width, int height, const std::string& radiance = "1") {
+  return "<scene>\n<camera type=\"perspective\"><integer name=\"width\" value=\"" + std::to_string(width) +
+         "\"/><integer name=\"height\" value=\"" + std::to_string(height) +
+         "\"/><transform name=\"toWorld\"><lookat origin=\"0 0 4\" target=\"0 0 0\" up=\"0 1 "
+         "0\"/></transform></camera>\n"
+         "<shape type=\"rectangle\"/>\n"
+         "<shape type=\"sphere\" name=\"lamp\"><point name=\"center\" value=\"1 0 0.9\"/><float "
+         "name=\"radius\" "
+         "value=\"0.8\"/><emitter type=\"area\"><color name=\"radiance\" value=\"" +
+         radiance + "\"/></emitter></shape>\n</scene>\n";
+}
+
+/// A folder with scene.xml in it.
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() { write_file(path("scene.xml"), scene_xml(40, 30)); }
+  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+  ProgramResult run(const std::vector<std::string>& arguments) const {
+    return run_program(arguments, folder_.path());
+  }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(read_file(path(name))); }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      names.push_back(entry.path().filename().string());
+    return names;
+  }
+  const TemporaryFolder folder_;
+};
+
+std::string metadata(const Image& image, const std::string& name) {
+  for (const auto& [key, value] : image.metadata)
+    if (key == name) return value;
+  return "(none)";
+}
+
+TEST_F(CommandLine, HelpOfRenderNamesEveryOption) {
+  const ProgramResult help = run({"render", "--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* name :
+       {"SCENE", "-o,--output", "--integrator", "--sampler", "--spp", "--replicates", "--seed", "--threads",
+        "--isa", "--stats", "--quiet", "--strict", "--dialect", "--replay"})
+    EXPECT_THAT(help.out, HasSubstr(name));
+}
+
+TEST_F(CommandLine, HelpNamesEveryCommand) {
+  const ProgramResult help = run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("render"), HasSubstr("info")));
+  EXPECT_THAT(run({"info", "--help"}).out, HasSubstr("--json"));
+  EXPECT_EQ(run({"--version"}).exit_code, 0);
+}
+
+TEST_F(CommandLine, QuietSaysNothing) {
+  const ProgramResult result = run({"render", "scene.xml", "-o", "a.exr", "--spp", "4", "--quiet"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(CommandLine, WritesEveryOutput) {
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "a.exr", "-o", "a.png", "--spp", "8", "--seed", "5"}).exit_code,
+            0);
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("scene.xml", "a.exr", "a.png"));
+  EXPECT_EQ(read_file(path("a.png")).substr(1, 3), "PNG");
+  const Image image = read_exr(path("a.exr"));
+  EXPECT_EQ(image.width, 40);
+  EXPECT_EQ(image.height, 30);
+  for (const char* name : {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"}) {
+    const Channel* channel = image.find(name);
+    ASSERT_TRUE(channel) << name;
+    for (const float value : channel->values) ASSERT_GE(value, 0) << name;  // NaN fails too
+  }
+  EXPECT_EQ(metadata(image, "seed"), "5");
+  EXPECT_EQ(metadata(image, "replicates"), "0-7");
+  EXPECT_EQ(metadata(image, "samplesPerPixel"), "8");
+  EXPECT_EQ(metadata(image, "integrator"), "light");
+  EXPECT_THAT(metadata(image, "software"), HasSubstr("Etendue"));
+  EXPECT_EQ(metadata(image, "sceneHash").size(), 16u);
+}
+
+TEST_F(CommandLine, StatsHaveTheirKeys) {
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "a.exr", "--spp", "8", "--integrator", "mis", "--sampler",
+                 "sobol", "--seed", "3", "--threads", "2", "--isa", "scalar", "--stats", "s.json", "--quiet"})
+                .exit_code,
+            0);
+  const nlohmann::json stats = json("s.json");
+  EXPECT_EQ(stats.at("scene"), "scene.xml");
+  EXPECT_EQ(stats.at("integrator"), "mis");
+  EXPECT_EQ(stats.at("sampler"), "sobol");
+  EXPECT_EQ(stats.at("isa"), "scalar");
+  EXPECT_EQ(stats.at("spp"), 8);
+  EXPECT_EQ(stats.at("replicates"), 8);
+  EXPECT_EQ(stats.at("seed"), 3);
+  EXPECT_EQ(stats.at("threads"), 2);
+  EXPECT_EQ(stats.at("width"), 40);
+  EXPECT_EQ(stats.at("height"), 30);
+  EXPECT_EQ(stats.at("samples"), 40 * 30 * 8);
+  EXPECT_EQ(stats.at("camera_rays"), 40 * 30 * 8);
+  EXPECT_EQ(stats.at("triangles"), 2);
+  EXPECT_EQ(stats.at("lights"), 1);
+  EXPECT_EQ(stats.at("invalid_samples"), 0);
+  for (const char* key : {"shadow_rays", "bsdf_rays", "peak_memory_bytes"}) {
+    EXPECT_TRUE(stats.at(key).is_number_integer()) << key;
+    EXPECT_GT(stats.at(key), 0) << key;
+  }
+  for (const char* key :
+       {"seconds_load", "seconds_build", "seconds_render", "samples_per_second", "mean_luminance"}) {
+    EXPECT_TRUE(stats.at(key).is_number_float()) << key;
+    EXPECT_GE(stats.at(key), 0) << key;
+  }
+  ASSERT_EQ(stats.at("mean").size(), 3u);
+  for (const auto& channel : stats.at("mean")) EXPECT_GT(channel, 0);
+}
+
+TEST_F(CommandLine, InfoListsEveryPluginWithItsParameters) {
+  const ProgramResult result = run({"info", "--json"});
+  ASSERT_EQ(result.exit_code, 0);
+  const nlohmann::json info = nlohmann::json::parse(result.out);
+  EXPECT_TRUE(info.at("version").is_string());
+  EXPECT_FALSE(info.at("instruction_sets").empty());
+  EXPECT_FALSE(info.at("dependencies").empty());
+  for (const char* family : {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights"}) {
+    ASSERT_FALSE(info.at(family).empty()) << family;
+    for (const auto& plugin : info.at(family)) {
+      EXPECT_FALSE(plugin.at("name").get<std::string>().empty()) << family;
+      EXPECT_FALSE(plugin.at("meaning").get<std::string>().empty()) << plugin.at("name");
+      for (const auto& parameter : plugin.at("parameters")) {
+        EXPECT_FALSE(parameter.at("meaning").get<std::string>().empty()) << parameter;
+        EXPECT_TRUE(parameter.at("is_required").is_boolean()) << parameter;
+        EXPECT_TRUE(parameter.contains("type") && parameter.contains("default") &&
+                    parameter.contains("unit"));
+      }
+    }
+  }
+  EXPECT_EQ(run({"info"}).exit_code, 0);
+}
+
+TEST_F(CommandLine, ProgressWithoutATerminalIsAtMostALineASecond) {
+  write_file(path("scene.xml"), scene_xml(256, 256));
+  const ProgramResult result =
+      run({"render", "scene.xml", "-o", "a.exr", "--spp", "150", "--threads", "1", "--isa", "scalar"});
+  ASSERT_EQ(result.exit_code, 0);
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = result.err.find("render: ", at)) != std::string::npos; ++at) ++lines;
+  EXPECT_LE(double(lines), result.seconds);
+  EXPECT_THAT(result.err, Not(HasSubstr("\r")));
+}
+
+TEST_F(CommandLine, InterruptKeepsWhatWasRendered) {
+  write_file(path("scene.xml"), scene_xml(512, 512));
+  Program program({"render", "scene.xml", "-o", "a.exr", "--stats", "s.json", "--spp", "5000", "--threads",
+                   "1", "--isa", "scalar"},
+                  folder_.path());
+  // The first line of progress comes after a second, and with the first tiles.
+  while (program.err_so_far().find("render: ") == std::string::npos && program.seconds() < 60)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("interrupted"));
+  const Image image = read_exr(path("a.exr"));
+  std::int64_t unknown = 0;
+  for (std::size_t i = 0; i < image.find("R")->values.size(); ++i) {
+    if (!std::isnan(image.find("stderr.R")->values[i])) continue;
+    ++unknown;
+    EXPECT_EQ(image.find("R")->values[i], 0);
+  }
+  EXPECT_GT(unknown, 0);
+  EXPECT_LT(unknown, 512 * 512);
+  EXPECT_EQ(metadata(image, "pixelsNotRendered"), std::to_string(unknown));
+  EXPECT_EQ(json("s.json").at("samples"), (512 * 512 - unknown) * 5000);
+}
+
+TEST_F(CommandLine, AFailedRenderLeavesTheOldImage) {
+  write_file(path("a.exr"), "old");
+  write_file(path("bad.xml"), "<scene>");
+  EXPECT_EQ(run({"render", "bad.xml", "-o", "a.exr"}).exit_code, 2);
+  EXPECT_EQ(read_file(path("a.exr")), "old");
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("scene.xml", "bad.xml", "a.exr"));
+}
+
+TEST_F(CommandLine, AKilledRenderLeavesTheOldImage) {
+  write_file(path("a.exr"), "old");
+  Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "10000000", "--threads", "1"},
+                  folder_.path());
+  while (program.err_so_far().empty() && program.seconds() < 60)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program.send(SIGKILL);
+  EXPECT_EQ(program.wait().exit_code, -SIGKILL);
+  EXPECT_EQ(read_file(path("a.exr")), "old");
+}
+
+TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsNamed) {
+  const ProgramResult result = run({"render", "scene.xml", "-o", "/proc/a.exr", "--spp", "1"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("error: /proc/a.exr: "));
+}
+
+TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
+  // Over the light's density, the radiance exceeds the largest float.
+  write_file(path("scene.xml"), scene_xml(4, 4, "3e38"));
+  const std::vector<std::string> sampling{"--integrator", "mis", "--spp",  "8",
+                                          "--replicates", "2",   "--seed", "7"};
+  std::vector<std::string> command{"render", "scene.xml", "-o",      "a.exr",
+                                   "--isa",  "scalar",    "--stats", "s.json"};
+  command.insert(command.end(), sampling.begin(), sampling.end());
+  const ProgramResult result = run(command);
+  ASSERT_EQ(result.exit_code, 0);
+  EXPECT_GT(json("s.json").at("invalid_samples"), 0);
+  ASSERT_THAT(result.err, HasSubstr("samples were not finite or negative"));
+  const std::string start =
+      "  etendue render scene.xml --integrator mis --spp 8 --replicates 2 --seed 7 --replay ";
+  const std::size_t at = result.err.find(start);
+  ASSERT_NE(at, std::string::npos) << result.err;
+  const std::string id = result.err.substr(at + start.size(), result.err.find('\n', at) - at - start.size());
+  command = {"render", "scene.xml", "--replay", id};
+  command.insert(command.end(), sampling.begin(), sampling.end());
+  const ProgramResult replayed = run(command);
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+  EXPECT_THAT(replayed.out, AllOf(HasSubstr("camera ray"), HasSubstr("light sample      light 'lamp'"),
+                                  HasSubstr("radiance          inf")));
+}
+
+TEST_F(CommandLine, ReplayRefusesASampleThatTheRenderDoesNotHave) {
+  for (const char* id : {"40,0,0,0", "0,30,0,0", "0,0,2,0", "0,0,0,2", "-1,0,0,0", "0,0,0", "0,0,0,0,0",
+                         "a,b,c,d", ",,,", "1,2,3,"}) {
+    const ProgramResult result =
+        run({"render", "scene.xml", "--spp", "4", "--replicates", "2", "--replay", id});
+    EXPECT_EQ(result.exit_code, 2) << id;
+    EXPECT_THAT(result.err, HasSubstr("replay")) << id;
+  }
+}
+
+}  // namespace
+}  // namespace etendue::test

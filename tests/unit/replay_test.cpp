@@ -1,0 +1,95 @@
+#include "render/replay.h"
+
+#include "base/error.h"
+#include "scene/load_scene.h"
+#include "scenefile/nori_xml.h"
+#include "support/program.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace etendue {
+namespace {
+
+LoadedScene small_scene() {
+  const test::TemporaryFolder folder;
+  test::write_file(
+      folder.path() / "scene.xml",
+      "<scene>"
+      "<camera type='perspective'><integer name='width' value='4'/><integer name='height' value='3'/>"
+      "<transform name='toWorld'><lookat origin='0 0 4' target='0 0 0' up='0 1 0'/></transform></camera>"
+      "<shape type='rectangle'><transform name='toWorld'><scale value='9'/></transform>"
+      "<bsdf type='phong'/></shape>"
+      "<shape type='sphere' name='lamp'><point name='center' value='1 0 1.5'/>"
+      "<float name='radius' value='0.6'/><emitter type='area'/></shape></scene>");
+  return load_scene(read_nori_xml(folder.path() / "scene.xml"));
+}
+
+class Replay : public testing::TestWithParam<IntegratorKind> {};
+
+TEST_P(Replay, SumsToThePixelOfTheScalarKernel) {
+  LoadedScene loaded = small_scene();
+  for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol}) {
+    loaded.scene.sampler = sampler;
+    RenderSettings settings;
+    settings.integrator.kind = GetParam();
+    settings.samples_per_pixel = settings.replicates =
+        2;  // so that a replicate's mean is one sample's radiance
+    settings.seed = 11;
+    const RenderResult result = render(loaded.scene, settings);
+    int lit = 0;
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 4; ++x) {
+        const Colorf first = replay(loaded.scene, settings, {x, y, 0, 0}).radiance;
+        const Colorf second = replay(loaded.scene, settings, {x, y, 1, 0}).radiance;
+        const PixelStatistics expected = combine_replicates(
+            std::array{Color<double>{first.r, first.g, first.b}, Color<double>{second.r, second.g, second.b}},
+            0);
+        const PixelStatistics& pixel = result.film.at(x, y);
+        EXPECT_EQ(pixel.mean.r, expected.mean.r) << x << "," << y;
+        EXPECT_EQ(pixel.m2.g, expected.m2.g) << x << "," << y;
+        EXPECT_EQ(pixel.m2.b, expected.m2.b) << x << "," << y;
+        lit += first.r > 0;
+      }
+    EXPECT_GT(lit, 1);
+  }
+}
+
+TEST_P(Replay, SaysHowTheRadianceCameAbout) {
+  const LoadedScene loaded = small_scene();
+  RenderSettings settings;
+  settings.integrator.kind = GetParam();
+  settings.samples_per_pixel = 64;
+  settings.replicates = 2;
+  const bool has_light_samples = GetParam() != IntegratorKind::direct;
+  const bool has_bsdf_samples = GetParam() != IntegratorKind::light;
+  for (int index = 0; index < 32; ++index) {
+    const SampleTrace trace = replay(loaded.scene, settings, {1, 1, 1, index});
+    EXPECT_NEAR(trace.x_px, 1.5, 2.5);
+    EXPECT_NEAR(trace.y_px, 1.5, 2.5);
+    EXPECT_NEAR(length(trace.ray_direction), 1, 1e-6);
+    ASSERT_TRUE(trace.hit);
+    EXPECT_EQ(trace.light_sample.has_value(), has_light_samples);
+    EXPECT_EQ(trace.bsdf_sample.has_value(), has_bsdf_samples);
+    if (trace.hit->geometry == 0) {
+      EXPECT_NEAR(trace.hit->position.z, 0, 1e-6);
+    }
+    if (GetParam() == IntegratorKind::light) {
+      const SampleTrace::LightSample& sample = *trace.light_sample;
+      EXPECT_EQ(trace.radiance.r, trace.emission.r + (sample.is_visible ? sample.unshadowed.r : 0));
+      EXPECT_NEAR(length(sample.position - Vec3f{1, 0, 1.5f}), 0.6, 1e-4);
+    }
+    if (GetParam() == IntegratorKind::direct) {
+      const SampleTrace::BsdfSample& sample = *trace.bsdf_sample;
+      const bool meets_light = sample.is_ray_cast && sample.light == 0;
+      EXPECT_EQ(trace.radiance.r, trace.emission.r + (meets_light ? sample.throughput.r : 0));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Replay,
+                         testing::Values(IntegratorKind::light, IntegratorKind::direct,
+                                         IntegratorKind::average, IntegratorKind::mis));
+
+}  // namespace
+}  // namespace etendue
