@@ -43,4 +43,28 @@ xsimd::batch<std::uint32_t, A> reverse_bits(const xsimd::batch<std::uint32_t, A>
 #endif
 }
 
+/// The high 32 bits of the 64-bit product.
+inline std::uint32_t mul_hi(std::uint32_t a, std::uint32_t b) {
+  return std::uint32_t((std::uint64_t(a) * b) >> 32);
+}
+/// By two widening products, of the even and of the odd lanes.
+template <class A>
+xsimd::batch<std::uint32_t, A> mul_hi(const xsimd::batch<std::uint32_t, A>& a,
+                                      const xsimd::batch<std::uint32_t, A>& b) {
+  using U = xsimd::batch<std::uint32_t, A>;
+#if defined(__AVX512F__)
+  const __m512i even = _mm512_srli_epi64(_mm512_mul_epu32(a.data, b.data), 32);
+  const __m512i odd = _mm512_mul_epu32(_mm512_srli_epi64(a.data, 32), _mm512_srli_epi64(b.data, 32));
+  return U(_mm512_mask_blend_epi32(0xaaaa, even, odd));
+#elif defined(__AVX2__)
+  const __m256i even = _mm256_srli_epi64(_mm256_mul_epu32(a.data, b.data), 32);
+  const __m256i odd = _mm256_mul_epu32(_mm256_srli_epi64(a.data, 32), _mm256_srli_epi64(b.data, 32));
+  return U(_mm256_blend_epi32(even, odd, 0xaa));
+#else
+  const __m128i even = _mm_srli_epi64(_mm_mul_epu32(a.data, b.data), 32);
+  const __m128i odd = _mm_mul_epu32(_mm_srli_epi64(a.data, 32), _mm_srli_epi64(b.data, 32));
+  return U(_mm_or_si128(even, _mm_and_si128(odd, _mm_set1_epi64x(std::int64_t(0xffffffff00000000u)))));
+#endif
+}
+
 }  // namespace etendue

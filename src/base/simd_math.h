@@ -1,6 +1,7 @@
 // Elementary functions over lanes, and loops over the distinct values in a packet.
 #pragma once
 
+#include "base/bits.h"
 #include "base/mask.h"
 
 namespace etendue {
@@ -59,21 +60,6 @@ void sincos_turns(const xsimd::batch<float, A>& t, xsimd::batch<float, A>& sine,
   const auto pair = xsimd::sincos(t * two_pi);
   sine = pair.first;
   cosine = pair.second;
-}
-
-/// The high 32 bits of the 64-bit product.
-inline std::uint32_t mul_hi(std::uint32_t a, std::uint32_t b) {
-  return std::uint32_t((std::uint64_t(a) * b) >> 32);
-}
-template <class A>
-xsimd::batch<std::uint32_t, A> mul_hi(const xsimd::batch<std::uint32_t, A>& a,
-                                      const xsimd::batch<std::uint32_t, A>& b) {
-  using U = xsimd::batch<std::uint32_t, A>;
-  const U low_half(0xffffu);
-  const U a_lo = a & low_half, a_hi = a >> 16, b_lo = b & low_half, b_hi = b >> 16;
-  const U cross = a_hi * b_lo + ((a_lo * b_lo) >> 16);
-  const U other = a_lo * b_hi + (cross & low_half);
-  return a_hi * b_hi + (cross >> 16) + (other >> 16);
 }
 
 /// 32 random bits as a float in [0, 1): the upper 24 bits.

@@ -45,7 +45,7 @@ class Lights {
   template <class F>
   LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& light, const Vec3<F>& reference,
                                 const Vec2<UInt<F>>& u_light, const Mask<F>& m) const {
-    LightPoint<F> point{};
+    LightPoint<F> point = no_light_point<F>();
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       point = select(lanes, table.template sample_position<F>(geometry, row, reference, u_light, lanes), point);
     });

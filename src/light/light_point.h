@@ -19,6 +19,12 @@ struct LightPoint {
 inline constexpr int light_pieces = 16;
 
 template <class F>
+LightPoint<F> no_light_point() {
+  const Vec3<F> zero{F(0), F(0), F(0)};
+  return {zero, zero, zero, F(0), Int<F>(0)};
+}
+
+template <class F>
 LightPoint<F> select(const Mask<F>& m, const LightPoint<F>& a, const LightPoint<F>& b) {
   return {select(m, a.position, b.position), select(m, a.ng, b.ng), select(m, a.ns, b.ns),
           select(m, a.pdf_area, b.pdf_area), select(m, a.piece, b.piece)};

@@ -2,7 +2,45 @@
 
 #include "base/alias_table.h"
 
+#include <algorithm>
+#include <array>
+
 namespace etendue {
+
+namespace {
+
+/// The cell of a 4x4 grid over the two longest sides of the mesh's box that holds a triangle's centre, in Morton order:
+/// where a light has many triangles, these are its pieces.
+class PieceGrid {
+ public:
+  explicit PieceGrid(const std::vector<Vec3f>& centers) {
+    Vec3f low = centers.front(), high = low;
+    for (const Vec3f& c : centers) {
+      low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
+      high = {std::max(high.x, c.x), std::max(high.y, c.y), std::max(high.z, c.z)};
+    }
+    low_ = {low.x, low.y, low.z};
+    size_ = {high.x - low.x, high.y - low.y, high.z - low.z};
+    const auto shortest = std::min_element(size_.begin(), size_.end()) - size_.begin();
+    first_axis_ = shortest == 0 ? 1 : 0;
+    second_axis_ = shortest == 2 ? 1 : 2;
+  }
+
+  std::int32_t piece(const Vec3f& center) const {
+    const std::array c{center.x, center.y, center.z};
+    const auto cell = [&](std::size_t axis) {
+      return size_[axis] > 0 ? std::min(std::int32_t(4 * (c[axis] - low_[axis]) / size_[axis]), 3) : 0;
+    };
+    const std::int32_t x = cell(first_axis_), y = cell(second_axis_);
+    return (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
+  }
+
+ private:
+  std::array<float, 3> low_{}, size_{};
+  std::size_t first_axis_, second_axis_;
+};
+
+}  // namespace
 
 std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id) {
   const auto first = std::size_t(geometry.first_triangle[std::size_t(geometry_id)]);
@@ -11,17 +49,23 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   has_normals_.push_back(geometry.has_normals[std::size_t(geometry_id)]);
   first_triangle_.push_back(std::int32_t(alias_.size()));
   triangle_count_.push_back(std::int32_t(count));
-  pieces_per_triangle_.push_back(float(light_pieces) / float(count));
   std::vector<double> areas;
-  areas.reserve(count);
+  std::vector<Vec3f> centers;
   double total_area = 0;
   for (std::size_t t = first; t < first + count; ++t) {
     const auto corner = [&](int k) { return geometry.positions[std::size_t(geometry.indices[3 * t + k])]; };
     const Vec3f origin = corner(0), edge_1 = corner(1) - origin, edge_2 = corner(2) - origin;
     for (const Vec3f& v : {origin, edge_1, edge_2}) triangles_.insert(triangles_.end(), {v.x, v.y, v.z});
     const auto wide = [](const Vec3f& v) { return Vec3<double>{v.x, v.y, v.z}; };
+    centers.push_back(origin + (edge_1 + edge_2) * (1.0f / 3));
     areas.push_back(0.5 * length(cross(wide(edge_1), wide(edge_2))));
     total_area += areas.back();
+  }
+  const PieceGrid grid(centers);
+  for (std::size_t t = 0; t < count; ++t) {
+    // Of a light with few triangles, each has several pieces.
+    const auto begin = std::int32_t(t * light_pieces / count), end = std::int32_t((t + 1) * light_pieces / count);
+    pieces_.push_back(count >= light_pieces ? grid.piece(centers[t]) | 1 << 8 : begin | (end - begin) << 8);
   }
   const AliasTable table = make_alias_table(areas);
   alias_threshold_.insert(alias_threshold_.end(), table.threshold.begin(), table.threshold.end());

@@ -51,8 +51,8 @@ class MeshLights {
       point.ns = select(is_smooth, ns, point.ng);
     }
     point.pdf_area = pdf_area_.at(row);
-    const F along = (to_float(triangle) + u_triangle.y) * pieces_per_triangle_.at(row);
-    point.piece = min_int(to_int(along), I(light_pieces - 1));
+    const I pieces = gather(pieces_.data(), first + triangle);
+    point.piece = (pieces & I(0xff)) + to_int(u_triangle.y * to_float(pieces >> 8));
     return point;
   }
 
@@ -65,8 +65,10 @@ class MeshLights {
  private:
   // Per light.
   LookupTable<std::int32_t> geometry_id_, has_normals_, first_triangle_, triangle_count_;
-  LookupTable<float> pdf_area_, pieces_per_triangle_;
-  // Per triangle of all lights: the alias table, and a corner and two edges.
+  LookupTable<float> pdf_area_;
+  // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first in the low
+  // byte, their number above.
+  std::vector<std::int32_t> pieces_;
   std::vector<std::uint32_t> alias_threshold_;
   std::vector<std::int32_t> alias_;
   std::vector<float> triangles_;

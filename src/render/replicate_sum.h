@@ -18,8 +18,9 @@ class ReplicateSum {
   }
   /// The sum so far; starts anew.
   double take() {
-    double total = 0;
-    for (const double value : slot_) total += value;
+    for (int half = slots / 2; half > 0; half /= 2)
+      for (int s = 0; s < half; ++s) slot_[s] += slot_[s + half];
+    const double total = slot_[0];
     slot_.fill(0);
     return total;
   }

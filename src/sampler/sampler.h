@@ -47,7 +47,8 @@ Vec2<UInt<F>> sample_2d(SamplerKind kind, const UInt<F>& stream_lo, const UInt<F
     const U x = hash32(hash32(index ^ seed_index) + seed_x);
     return {x, hash32(x ^ hash32(seed_x + index * U(0xc2b2ae35u)))};
   }
-  return owen_sobol_2d(index, seed_index, seed_x, hash32(seed_x ^ seed_index));
+  // The third seed needs only to be independent of each of the others, not hashed again.
+  return owen_sobol_2d(index, seed_index, seed_x, seed_x + seed_index);
 }
 
 template <class F>
