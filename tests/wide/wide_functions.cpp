@@ -163,7 +163,7 @@ void light_pdf(const Scene& scene, Packet& p) {
 void lights_sample(const Scene& scene, Packet& p) {
   const Vec3<F> reference = p.vec();
   const LightSample<F> sample = sample_lights<F>(scene, reference, p.words(), every_lane());
-  p.give(sample.wi), p.give(sample.radiance_over_pdf), p.give(sample.pdf_solid_angle);
+  p.give(sample.wi), p.give(sample.radiance_over_pdf), p.give(sample.pdf_solid_angle());
 }
 
 template <Combination combination>
