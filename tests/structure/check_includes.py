@@ -17,7 +17,8 @@ import re
 import sys
 import tempfile
 
-FOLDERS = ["base", "stats", "sampler", "film", "scenefile", "geometry", "bsdf", "light", "lightsampler", "scene",
+# scenefile comes early because the plugins of every family state their parameters through it.
+FOLDERS = ["base", "stats", "scenefile", "sampler", "film", "geometry", "bsdf", "light", "lightsampler", "scene",
            "integrator", "render"]
 TOPS = ["src", "apps", "tests", "bench"]
 MAX_HEADER_LINES = 150
