@@ -237,7 +237,7 @@ TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
   RunningStatistics irradiance;
   for (int i = 0; i < samples; ++i) {
     const LightSample<float> sample = sample_lights<float>(scene, {0, 0, 0}, random.square(), true);
-    irradiance.add(double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z));
+    irradiance.add(sample.is_facing ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
     if (!sample.is_facing) continue;
     const std::int32_t light = sample.light;
     const Vec3f ng = light == 1   ? Vec3f(normalize(sample.position - Vec3f{1, 2, 1}))
