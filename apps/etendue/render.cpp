@@ -15,6 +15,7 @@
 #include "film/temporary_file.h"
 #include "progress.h"
 #include "render/render.h"
+#include "render/thread_limit.h"
 #include "replay.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
@@ -190,7 +191,8 @@ int run(const Options& options) {
   const std::optional<Dialect> dialect =
       options.dialect.empty() ? std::nullopt : std::optional(dialect_from_name(options.dialect));
   const SceneDesc description = read_nori_xml(options.scene_file, dialect);
-  LoadedScene loaded = load_scene(description, options.threads);
+  const ThreadLimit thread_limit(options.threads);
+  LoadedScene loaded = load_scene(description);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
   std::vector<UnreadKey> unread;

@@ -31,9 +31,14 @@ xsimd::batch<std::int32_t, A> min_int(const xsimd::batch<std::int32_t, A>& a, co
 
 inline float exp(float x) { return std::exp(x); }
 inline float log(float x) { return std::log(x); }
+inline float expm1(float x) { return std::expm1(x); }
 template <class A>
 xsimd::batch<float, A> exp(const xsimd::batch<float, A>& x) {
   return xsimd::exp(x);
+}
+template <class A>
+xsimd::batch<float, A> expm1(const xsimd::batch<float, A>& x) {
+  return xsimd::expm1(x);
 }
 template <class A>
 xsimd::batch<float, A> log(const xsimd::batch<float, A>& x) {

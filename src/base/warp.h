@@ -39,9 +39,10 @@ template <class F>
 Vec3<F> square_to_power_cosine(const Vec2<F>& u, const F& exponent) {
   F sine, cosine;
   sincos_turns(u.y, sine, cosine);
-  const F cos_alpha = pow_positive(F(1) - u.x, F(1) / (exponent + F(1)));
-  const F sin_alpha = sqrt(max(F(1) - cos_alpha * cos_alpha, F(0)));
-  return {sin_alpha * cosine, sin_alpha * sine, cos_alpha};
+  // 1 - cos without cancellation: the lobes of large exponents are narrow.
+  const F one_minus_cos = -expm1(log(F(1) - u.x) / (exponent + F(1)));
+  const F sin_alpha = sqrt(one_minus_cos * (F(2) - one_minus_cos));
+  return {sin_alpha * cosine, sin_alpha * sine, F(1) - one_minus_cos};
 }
 /// (n + 1) / (2 pi) cos^n, in 1/sr; 0 for a negative cosine.
 template <class F>

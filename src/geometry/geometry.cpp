@@ -11,6 +11,7 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() / 3;
   if (positions.size() + mesh.positions.size() > most || indices.size() + mesh.indices.size() > most)
     throw InputError("the scene has more than 715 million vertices or 238 million triangles");
+  if (!positions.empty()) positions.pop_back();  // The spare vertex moves to the new end.
   const auto first_vertex = std::int32_t(positions.size());
   material.push_back(ids.material);
   light.push_back(ids.light);
@@ -28,6 +29,7 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
     uvs.resize(positions.size(), Vec2f{0, 0});
   else
     uvs.insert(uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+  positions.push_back(Vec3f{0, 0, 0});
   indices.reserve(indices.size() + mesh.indices.size());
   for (const std::uint32_t index : mesh.indices) indices.push_back(first_vertex + std::int32_t(index));
   return count() - 1;

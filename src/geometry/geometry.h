@@ -38,7 +38,8 @@ class Geometry {
   std::vector<std::int32_t> has_normals;     ///< 1 where the mesh has vertex normals.
   std::vector<std::int32_t> triangles;       ///< Number of them; 0 for spheres.
   std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 for meshes.
-  // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none.
+  // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none. The ray caster reads 16
+  // bytes of each position, so one spare vertex always stands behind the last.
   std::vector<Vec3f> positions, normals;
   std::vector<Vec2f> uvs;
   // Three global vertex numbers a triangle.

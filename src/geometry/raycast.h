@@ -41,8 +41,7 @@ struct SegmentSpan {
 /// An acceleration structure over a Geometry, which must outlive it.
 class RayCaster {
  public:
-  /// \param threads for building; 0: all.
-  explicit RayCaster(const Geometry& geometry, int threads = 0);
+  explicit RayCaster(const Geometry& geometry);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;

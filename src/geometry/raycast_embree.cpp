@@ -257,9 +257,9 @@ struct RayCaster::Embree {
   }
 };
 
-RayCaster::RayCaster(const Geometry& geometry, int threads) : embree_(std::make_unique<Embree>()) {
-  const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : "";
-  embree_->device = rtcNewDevice(config.c_str());
+RayCaster::RayCaster(const Geometry& geometry) : embree_(std::make_unique<Embree>()) {
+  // Without a number of threads: Embree would hold the whole process to it for as long as the device lives.
+  embree_->device = rtcNewDevice("");
   if (!embree_->device) throw_embree_error(nullptr, "to start");
   embree_->scene = rtcNewScene(embree_->device);
   for (std::int32_t id = 0; id < geometry.count(); ++id) {
@@ -267,7 +267,7 @@ RayCaster::RayCaster(const Geometry& geometry, int threads) : embree_(std::make_
     if (geometry.sphere[id] < 0) {
       shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
       rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions.data(), 0,
-                                 sizeof(Vec3f), geometry.positions.size());
+                                 sizeof(Vec3f), geometry.positions.size() - 1);
       rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices.data(),
                                  std::size_t(geometry.first_triangle[id]) * 3 * sizeof(std::int32_t),
                                  3 * sizeof(std::int32_t), geometry.triangles[id]);

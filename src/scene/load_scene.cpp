@@ -22,7 +22,7 @@ class Loader {
  public:
   explicit Loader(const SceneDesc& description) : description_(description) {}
 
-  LoadedScene load(int threads) {
+  LoadedScene load() {
     const Object& root = description_.root;
     if (root.family != "scene")
       throw InputError(root.location, fmt::format("the root is <{}>, not <scene>", root.family));
@@ -37,7 +37,7 @@ class Loader {
                        fmt::format("put <{} type=\"area\"> with a radiance inside a mesh or shape",
                                    description_.dialect == Dialect::nori_2012 ? "luminaire" : "emitter"));
     const Clock::time_point start = Clock::now();
-    RayCaster rays(geometry_, threads);
+    RayCaster rays(geometry_);
     const double seconds_build = seconds_since(start);
     return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_), std::move(rays),
                   std::move(materials_), std::move(lights_), sampler_},
@@ -159,6 +159,6 @@ class Loader {
 
 }  // namespace
 
-LoadedScene load_scene(const SceneDesc& description, int threads) { return Loader(description).load(threads); }
+LoadedScene load_scene(const SceneDesc& description) { return Loader(description).load(); }
 
 }  // namespace etendue

@@ -19,8 +19,8 @@ struct LoadedScene {
   double seconds_build = 0;  ///< Ray casting's tree and the lights' tables.
 };
 
-/// Reads the shapes, makes materials and lights, builds the ray caster with `threads` (0: all). Throws InputError for
+/// Reads the shapes, makes materials and lights, builds the ray caster. Throws InputError for
 /// anything missing, repeated, unknown or degenerate: the message names the object and its place.
-LoadedScene load_scene(const SceneDesc& description, int threads = 0);
+LoadedScene load_scene(const SceneDesc& description);
 
 }  // namespace etendue
