@@ -1,8 +1,7 @@
 // A pixel's Student-t interval over its replicates contains the exact value as often as it says.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its binomial tests, normal approximation), fixed seeds.
-// Seen to fail when: all replicates share one stream; standard errors are taken over samples as if they were
-// independent (Sobol); m2 is combined without the term of the means' difference.
+// Seen to fail when: every two replicates share a stream.
 #include "stats/significance.h"
 #include "stats/t_test.h"
 #include "test_scene.h"

@@ -1,8 +1,8 @@
 // Pixel filters: sampled offsets follow the filter's own density.
 //
 // False-alarm rate of this file: 1e-5 (Sidak), fixed seeds.
-// Seen to fail when: the table has one interval less than sample_offset_px thinks; the Gaussian keeps its
-// edge value; tent's cumulative is 0.6 t^2 on the left.
+// Seen to fail when: the table is looked up by 2 u in place of its square root; it has evenly spaced
+// quantiles; the Gaussian keeps its edge value; tent's cumulative is wrong on the left.
 #include "film/filter.h"
 
 #include "stats/chi_squared.h"

@@ -1,9 +1,11 @@
 // All integrators estimate one image: Welch's t-test, block by block.
 //
 // False-alarm rate: 0.01 for the two scenes of the exercise together (Sidak over scenes, blocks, channels and
-// pairs of integrators), and 1e-5 for the scene with everything in it; fixed seeds. Seen to fail when: mis
-// weights both samples with the light's density; average adds whole samples; the light stage leaves out
-// choice.pmf (4 lights); add_bsdf_hits counts lights from behind; shadow rays go 5 % too far.
+// pairs of integrators), and 1e-5 for the scene with everything in it; fixed seeds.
+// Seen to fail when: the BSDF samples of mis have weight 1; the density of mis lacks the probability of the
+// light; average counts each sample 0.55; choice.pmf is left out; lights shine from behind; a light's
+// shading normals are ignored; results stay in the order of the aimed rays; random numbers depend on the
+// tile, or on what the thread did before.
 #include "render/kernel.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"

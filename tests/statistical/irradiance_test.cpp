@@ -2,9 +2,10 @@
 //
 // False-alarm rate of this file: 1e-5 (Sidak over all its t-tests), fixed seeds.
 // Seen to fail when: rays start off the surface by a fraction of its coordinates alone, so that a surface at
-// the origin shadows itself; LightPoint's pdf_area is 1 % too large (mesh, rectangle); the sphere's cone is 1
-// % too wide; the cosine at the receiver is left out of the light stage; choice.pmf is left out; one of the
-// two weights of mis is 1; Diffuse::eval_ gives albedo instead of albedo / pi; shadow rays are not cast.
+// the origin shadows itself; a mesh light's pdf_area is 1 % too large; a sphere's cone is 1 % too wide; the
+// cosine at the receiver is left out; choice.pmf is left out; the BSDF samples of mis have weight 1; the
+// density of mis lacks the probability of the light; Diffuse::eval_ gives albedo; shadow rays end 5 % early;
+// lights shine from behind.
 #include "closed_forms.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"

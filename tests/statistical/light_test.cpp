@@ -1,10 +1,10 @@
 // Every kind of light: points follow pdf_area, which integrates to 1; the choice of a light follows its pmf.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its tests), fixed seeds.
-// Seen to fail when: the alias table's thresholds are all 2^31 (unequal triangles); what is left of u.y is
-// not stretched back; square_to_triangle does not fold; the sphere's cone is taken from the half angle;
-// sin_max_sq uses the radius unsquared; pdf_area of the sphere leaves out the cosine; the rectangle's pdf is
-// 2 / area.
+// Seen to fail when: the alias table's thresholds are all 2^31; what is left of u.y is not stretched back;
+// square_to_triangle does not fold; sin_max_sq has the radius unsquared; pdf_area of the sphere lacks the
+// cosine; the sine at its centre comes from the cosine (near receivers); the rectangle's pdf is 2 / area;
+// some lights are chosen more often.
 #include "light/light.h"
 
 #include "integrator/light_sampling.h"

@@ -1,9 +1,10 @@
 // Both samplers: equidistributed, uncorrelated where they should be, and Sobol's points a (0,2)-sequence.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its chi-squared and z-tests), fixed seeds; the
-// stratification tests are exact. Seen to fail when: scramble_reversed multiplies by an even number;
-// sobol_second_reversed leaves out its third step; the padded pairs share seed_order (`pair` left out of
-// seed_index); seed_y = seed_x; independent gives y = x.
+// stratification tests are exact.
+// Seen to fail when: scramble_reversed multiplies by an even number; sobol_second_reversed leaves out its
+// third step; the padded pairs share seed_order (`pair` left out of seed_index); the replicate is left out
+// of the stream; independent gives y = x.
 #include "sampler/sampler.h"
 
 #include "stats/chi_squared.h"

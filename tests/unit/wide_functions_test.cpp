@@ -1,8 +1,8 @@
 // Every function of the wide code gives, at every instruction set of this machine, what it gives for one
 // lane.
 //
-// Seen to fail when: less compares as signed; mul_hi leaves out its cross term; pow_positive gives 1 for 0^0
-// in one lane; select swaps its arguments for integers; sincos_turns is off by 1e-6.
+// Seen to fail when: less compares as signed; mul_hi leaves out a carry; 0^0 is 1 in the batches; select
+// swaps its arguments for integers; sincos_turns is off by 1e-6.
 #include "wide/wide_functions.h"
 
 #include "render/isa.h"
