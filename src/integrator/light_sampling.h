@@ -13,7 +13,7 @@ struct LightSample {
   Vec3<F> position;  ///< On the light, world (m).
   Vec3<F> wi;        ///< Unit, from the reference point to the light.
   /// Emitted radiance times cos(theta'') / distance^2 over the density per area; the cosine at the receiver is left to
-  /// the caller.
+  /// the caller. 0 where the light faces away.
   Color<F> radiance_over_pdf;
   F pdf_area;            ///< 1/m^2, the probability of the light included.
   F distance_sq;         ///< m^2
@@ -21,8 +21,10 @@ struct LightSample {
   Mask<F> is_facing;     ///< Elsewhere the light faces away, and there is no sample.
   Int<F> light, piece;   ///< Near samples of one light have near pieces.
 
-  /// The density of `wi` (1/sr) at the reference point.
-  F pdf_solid_angle() const { return solid_angle_from_area(pdf_area, distance_sq, cos_theta_light); }
+  /// The density of `wi` (1/sr) at the reference point; 0: no sample.
+  F pdf_solid_angle() const {
+    return select(is_facing, solid_angle_from_area(pdf_area, distance_sq, cos_theta_light), F(0));
+  }
 };
 
 /// Area sampling of the lights: uniform choice of a light, a point on it by `sample_position`, the geometry term
@@ -46,7 +48,7 @@ LightSample<F> sample_lights(const Scene& scene, const Vec3<F>& reference, const
   const F pdf_area = choice.pmf * point.pdf_area;
   return {.position = point.position,
           .wi = wi,
-          .radiance_over_pdf = scene.lights.radiance<F>(choice.light, m) * (geometry_term / pdf_area),
+          .radiance_over_pdf = scene.lights.radiance<F>(choice.light, m) * select(is_facing, geometry_term / pdf_area, F(0)),
           .pdf_area = pdf_area,
           .distance_sq = distance_sq,
           .cos_theta_light = cos_theta_light,

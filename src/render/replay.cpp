@@ -92,7 +92,7 @@ SampleTrace::LightSample light_sample_of(const Scene& scene, const SampleBlock& 
   return {sample.light,
           sample.position,
           sample.radiance_over_pdf,
-          sample.is_facing ? sample.pdf_solid_angle() : 0,
+          sample.pdf_solid_angle(),
                     load_lanes<F>(block.unshadowed, 0), block.shadow_is_needed[0] != 0,
           block.shadow_is_free[0] != 0};
 }

@@ -163,7 +163,10 @@ void light_pdf(const Scene& scene, Packet& p) {
 void lights_sample(const Scene& scene, Packet& p) {
   const Vec3<F> reference = p.vec();
   const LightSample<F> sample = sample_lights<F>(scene, reference, p.words(), every_lane());
-  p.give(sample.wi), p.give(sample.radiance_over_pdf), p.give(sample.pdf_solid_angle);
+  const Vec3<F> none{F(0), F(0), F(0)};
+  p.give(select(sample.is_facing, sample.wi, none));
+  p.give(select(sample.is_facing, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
+  p.give(select(sample.is_facing, sample.pdf_solid_angle(), F(0)));
 }
 
 template <Combination combination>
