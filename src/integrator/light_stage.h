@@ -118,7 +118,8 @@ void add_light_samples(const Scene& scene, SampleBlock& block, Combination combi
     aim_shadow_rays(scene, block);
   else
     keep_shadow_rays_in_order(block);
-  add_unshadowed<F>(scene, block, is_reordering ? Coherence::coherent : Coherence::incoherent);
+  const bool is_coherent = is_reordering && scene.lights.are_aimed_packets_coherent();
+  add_unshadowed<F>(scene, block, is_coherent ? Coherence::coherent : Coherence::incoherent);
 }
 
 }  // namespace etendue

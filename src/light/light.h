@@ -29,6 +29,10 @@ class Lights {
   std::int32_t count() const { return kind_.size(); }
   const std::string& name(std::int32_t light) const { return names_[std::size_t(light)]; }
 
+  /// Whether shadow packets that aim at one piece of one light are best traced as one. The random choice of a light is
+  /// uniform, so most lights are most rays.
+  bool are_aimed_packets_coherent() const { return 2 * meshes.finely_built_count() <= count(); }
+
   MeshLights meshes;
   RectangleLights rectangles;
   SphereLights spheres;

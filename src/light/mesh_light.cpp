@@ -9,6 +9,11 @@ namespace etendue {
 
 namespace {
 
+/// Whether the box around a triangle has a volume.
+bool has_thick_box(const Vec3f& edge_1, const Vec3f& edge_2) {
+  return (edge_1.x != 0 || edge_2.x != 0) && (edge_1.y != 0 || edge_2.y != 0) && (edge_1.z != 0 || edge_2.z != 0);
+}
+
 /// The cell of a 4x4 grid over the two longest sides of the mesh's box that holds a triangle's centre, in Morton order:
 /// where a light has many triangles, these are its pieces.
 class PieceGrid {
@@ -50,6 +55,7 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   first_triangle_.push_back(std::int32_t(alias_.size()));
   triangle_count_.push_back(std::int32_t(count));
   std::vector<double> areas;
+  std::size_t thick_boxes = 0;
   std::vector<Vec3f> centers;
   double total_area = 0;
   for (std::size_t t = first; t < first + count; ++t) {
@@ -57,10 +63,13 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
     const Vec3f origin = corner(0), edge_1 = corner(1) - origin, edge_2 = corner(2) - origin;
     for (const Vec3f& v : {origin, edge_1, edge_2}) triangles_.insert(triangles_.end(), {v.x, v.y, v.z});
     const auto wide = [](const Vec3f& v) { return Vec3<double>{v.x, v.y, v.z}; };
+    thick_boxes += has_thick_box(edge_1, edge_2);
     centers.push_back(origin + (edge_1 + edge_2) * (1.0f / 3));
     areas.push_back(0.5 * length(cross(wide(edge_1), wide(edge_2))));
     total_area += areas.back();
   }
+  constexpr std::size_t few_a_piece = 2;
+  finely_built_count_ += thick_boxes > few_a_piece * light_pieces;
   const PieceGrid grid(centers);
   for (std::size_t t = 0; t < count; ++t) {
     // Of a light with few triangles, each has several pieces.

@@ -17,6 +17,10 @@ class MeshLights {
   /// Makes the mesh `geometry_id` a light; returns its row. Its total area must be positive.
   std::int32_t add(const Geometry& geometry, std::int32_t geometry_id);
 
+  /// Lights on which a packet of shadow rays meets many triangles although it aims at one piece: rays end just short of
+  /// their light, but within the boxes around its triangles, unless these lie flat in a plane of two axes.
+  std::int32_t finely_built_count() const { return finely_built_count_; }
+
   /// The triangle comes from u.y through an alias table (O(1)); what is left of u.y is stretched back over [0, 1).
   template <class F>
   LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& row, const Vec3<F>& /*reference*/,
@@ -66,6 +70,7 @@ class MeshLights {
   // Per light.
   LookupTable<std::int32_t> geometry_id_, has_normals_, first_triangle_, triangle_count_;
   LookupTable<float> pdf_area_;
+  std::int32_t finely_built_count_ = 0;
   // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first in the low
   // byte, their number above.
   std::vector<std::int32_t> pieces_;
