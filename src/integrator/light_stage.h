@@ -1,6 +1,10 @@
 // The light stages: sample the lights, aim the shadow rays, add what nothing hides.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include "base/frame.h"
 #include "bsdf/bsdf.h"
 #include "integrator/camera_stage.h"
@@ -60,19 +64,35 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
   const std::int32_t bins_a_quarter = ((aims - 1) >> shift) + 1, used_bins = quarters * bins_a_quarter;
 
   // Rays that are not needed go to a bin behind all others: no branch to mispredict.
-  const int quarter_size = (block.count + quarters - 1) / quarters;
+  const int quarter_size = (block.count + quarters - 1) / quarters, aim_shift = piece_shift + shift;
   for (std::int32_t quarter = 0; quarter < quarters; ++quarter) {
-    const int end = std::min(block.count, (quarter + 1) * quarter_size);
-    for (int i = quarter * quarter_size; i < end; ++i) {
-      const std::int32_t bin = quarter * bins_a_quarter + (block.aim[i] >> (piece_shift + shift));
-      block.aim[i] = block.shadow_is_needed[i] ? bin : used_bins;
+    const int begin = std::min(block.count, quarter * quarter_size);
+    const int end = std::min(block.count, begin + quarter_size);
+    const std::int32_t first_bin = quarter * bins_a_quarter;
+    for (int i = begin; i < end; ++i) {
+      const std::int32_t bin = first_bin + (block.aim[i] >> aim_shift);
+      block.aim[i] = (bin & block.shadow_is_needed[i]) | (used_bins & ~block.shadow_is_needed[i]);
     }
   }
-  std::array<std::int32_t, most_bins + 2> start{};
-  for (int i = 0; i < block.count; ++i) ++start[std::size_t(block.aim[i]) + 1];
-  for (std::int32_t bin = 0; bin < used_bins; ++bin) start[bin + 1] += start[bin];
-  block.shadow_count = start[used_bins];
-  for (int i = 0; i < block.count; ++i) block.order[std::size_t(start[std::size_t(block.aim[i])]++)] = i;
+  // Two counts, of even and odd samples, so that neighbours in one bin need not wait for each other.
+  std::array<std::array<std::int32_t, most_bins + 1>, 2> next{};
+  const std::int32_t* bins = block.aim.data();
+  const int even_count = block.count / 2 * 2;
+  for (int i = 0; i < even_count; i += 2) {
+    ++next[0][std::size_t(bins[i])];
+    ++next[1][std::size_t(bins[i + 1])];
+  }
+  if (even_count < block.count) ++next[0][std::size_t(bins[even_count])];
+  std::int32_t total = 0;
+  for (std::int32_t bin = 0; bin <= used_bins; ++bin) {
+    if (bin == used_bins) block.shadow_count = total;
+    for (auto& half : next) total += std::exchange(half[std::size_t(bin)], total);
+  }
+  for (int i = 0; i < even_count; i += 2) {
+    block.order[std::size_t(next[0][std::size_t(bins[i])]++)] = i;
+    block.order[std::size_t(next[1][std::size_t(bins[i + 1])]++)] = i + 1;
+  }
+  if (even_count < block.count) block.order[std::size_t(next[0][std::size_t(bins[even_count])]++)] = even_count;
   block.clock.finish(Stage::aiming);
 }
 

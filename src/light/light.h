@@ -49,6 +49,8 @@ class Lights {
   template <class F>
   LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& light, const Vec3<F>& reference,
                                 const Vec2<UInt<F>>& u_light, const Mask<F>& m) const {
+    // Most scenes have lights of one kind only: then no lane needs to be chosen from another table.
+    if (meshes_only()) return meshes.sample_position<F>(geometry, select(m, light, Int<F>(0)), reference, u_light, m);
     LightPoint<F> point = no_light_point<F>();
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       point = select(lanes, table.template sample_position<F>(geometry, row, reference, u_light, lanes), point);
@@ -68,6 +70,9 @@ class Lights {
   }
 
  private:
+  /// Then a light's id is its row.
+  bool meshes_only() const { return meshes.count() == count(); }
+
   template <class F, class Function>
   void for_each_kind(const Int<F>& light, const Mask<F>& m, Function&& f) const {
     const Int<F> safe = select(m, light, Int<F>(0));

@@ -17,6 +17,8 @@ class MeshLights {
   /// Makes the mesh `geometry_id` a light; returns its row. Its total area must be positive.
   std::int32_t add(const Geometry& geometry, std::int32_t geometry_id);
 
+  std::int32_t count() const { return pdf_area_.size(); }
+
   /// Lights on which a packet of shadow rays meets many triangles although it aims at one piece: rays end just short of
   /// their light, but within the boxes around its triangles, unless these lie flat in a plane of two axes.
   std::int32_t finely_built_count() const { return finely_built_count_; }
