@@ -30,8 +30,8 @@ Mesh tessellate(int cells, bool has_normals, const Surface& surface) {
   const auto at = [&](int i, int j) { return std::uint32_t(j * (cells + 1) + i); };
   for (int j = 0; j < cells; ++j)
     for (int i = 0; i < cells; ++i)
-      mesh.indices.insert(mesh.indices.end(),
-                          {at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      mesh.indices.insert(mesh.indices.end(), {at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j),
+                                               at(i + 1, j + 1), at(i, j + 1)});
   return mesh;
 }
 
@@ -63,7 +63,8 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
     const double center_x = ball % 8 - 3.5, center_z = ball / 8 - 3.5;
     geometry.add_mesh(tessellate(grid / 14 + 4, has_normals,
                                  [=](double u, double v) {
-                                   const double theta = std::numbers::pi * (1 - v), phi = 2 * std::numbers::pi * u;
+                                   const double theta = std::numbers::pi * (1 - v),
+                                                phi = 2 * std::numbers::pi * u;
                                    return Vec3<double>{center_x + 0.3 * std::sin(theta) * std::sin(phi),
                                                        0.8 + 0.3 * std::cos(theta),
                                                        center_z + 0.3 * std::sin(theta) * std::cos(phi)};
@@ -72,9 +73,11 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
   }
   for (int light = 0; light < 4; ++light) {
     const double corner_x = (light & 1 ? 3 : -3) - 0.5, corner_z = (light & 2 ? 3 : -3) - 0.5;
-    const std::int32_t id = geometry.add_mesh(
-        tessellate(4, false, [=](double u, double v) { return Vec3<double>{corner_x + u, 4, corner_z + v}; }),
-        {0, light});
+    const std::int32_t id = geometry.add_mesh(tessellate(4, false,
+                                                         [=](double u, double v) {
+                                                           return Vec3<double>{corner_x + u, 4, corner_z + v};
+                                                         }),
+                                              {0, light});
     const float radiance = 10.0f + float(light);
     lights.add({radiance, radiance, radiance}, "light " + std::to_string(light), LightKind::mesh,
                lights.meshes.add(geometry, id));
@@ -90,8 +93,8 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
   camera.at_film_origin = forward - right * 0.6f + up * 0.4f;
 
   RayCaster rays(geometry);
-  return {camera, PixelFilter::box(), std::move(geometry), std::move(rays), materials, std::move(lights),
-          SamplerKind::sobol};
+  return {camera,    PixelFilter::box(), std::move(geometry), std::move(rays),
+          materials, std::move(lights),  SamplerKind::sobol};
 }
 
 }  // namespace etendue::bench

@@ -1,19 +1,19 @@
 // How near a render comes to the speed of its rays alone: see docs/performance.md for how to read it.
 //
-// Tiles spread over the image are rendered on one thread; the rays of each are then cast again, bare, in packets of the
-// same width and in sample order. fraction_of_limit = bare time / render time.
-
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <ctime>
-#include <map>
-#include <nlohmann/json.hpp>
+// Tiles spread over the image are rendered on one thread; the rays of each are then cast again, bare, in
+// packets of the same width and in sample order. fraction_of_limit = bare time / render time.
 
 #include "generated_scenes.h"
 #include "integrator/surface_point.h"
 #include "render/kernel.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ctime>
+#include <fmt/format.h>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
 
 namespace {
 
@@ -46,7 +46,8 @@ struct Recording {
   void append(const SampleBlock& block) {
     const int count = block.padded_count;
     for (int i = 0; i < count; ++i)
-      shadow_order.push_back(block.shadow_is_needed[i] && i < block.count ? std::int32_t(shadow_origin.x.size()) + i : -1);
+      shadow_order.push_back(
+          block.shadow_is_needed[i] && i < block.count ? std::int32_t(shadow_origin.x.size()) + i : -1);
     const RayColumns& rays = block.camera_ray;
     origin.append(rays.origin, count);
     direction.append(rays.direction, count);
@@ -69,11 +70,12 @@ struct Recording {
     for (auto* values : {&ng_x_, &ng_y_, &ng_z_, &u_, &v_}) values->resize(t_near.size());
     for (auto* values : {&geometry_, &primitive_, &is_free_}) values->resize(t_near.size());
     const double start = thread_seconds();
-    rays.closest_hits({origin.x.data(), origin.y.data(), origin.z.data(), direction.x.data(), direction.y.data(),
-                       direction.z.data(), t_near.data(), t_far.data(), is_active.data(), count},
-                      {hit_t_.data(), ng_x_.data(), ng_y_.data(), ng_z_.data(), u_.data(), v_.data(),
-                       geometry_.data(), primitive_.data()},
-                      lanes, Coherence::coherent);
+    rays.closest_hits(
+        {origin.x.data(), origin.y.data(), origin.z.data(), direction.x.data(), direction.y.data(),
+         direction.z.data(), t_near.data(), t_far.data(), is_active.data(), count},
+        {hit_t_.data(), ng_x_.data(), ng_y_.data(), ng_z_.data(), u_.data(), v_.data(), geometry_.data(),
+         primitive_.data()},
+        lanes, Coherence::coherent);
     rays.unoccluded({shadow_origin.x.data(), shadow_origin.y.data(), shadow_origin.z.data(),
                      shadow_direction.x.data(), shadow_direction.y.data(), shadow_direction.z.data(),
                      shadow_order.data(), count, shadow_segment_end},
@@ -94,7 +96,7 @@ struct Measurement {
 Measurement measure(const Scene& scene, Isa isa, int samples_per_pixel, double most_samples) {
   RenderSettings settings;
   settings.samples_per_pixel = samples_per_pixel;
-  settings.replicates = 4;
+  settings.replicates = std::gcd(4, samples_per_pixel);
   settings.isa = isa;
   settings.threads = 1;
   const Kernel& kernel = kernel_for(isa);
@@ -150,17 +152,18 @@ double throughput(const Scene& scene, int threads, int samples_per_pixel) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"Fraction of the bare-ray limit that a render reaches, on generated scenes"};
   bool is_json = false, has_normals = false;
   double most_samples = 25e6;
   std::vector<std::string> isa_names;
-  std::vector<int> grids{60, 700}, sample_counts{64, 1024};
+  std::vector<int> grids{65, 700}, sample_counts{64, 1024};
   app.add_flag("--json", is_json, "JSON on standard output");
   app.add_flag("--normals", has_normals, "Meshes with vertex normals");
   app.add_option("--grids", grids, "Sizes of the scene: 2 grid^2 triangles and more")->delimiter(',');
   app.add_option("--spp", sample_counts, "Samples a pixel")->delimiter(',');
-  app.add_option("--isa", isa_names, "Instruction sets; all that this machine has unless given")->delimiter(',');
+  app.add_option("--isa", isa_names, "Instruction sets; all that this machine has unless given")
+      ->delimiter(',');
   app.add_option("--samples", most_samples, "Samples to render for each figure")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
@@ -172,16 +175,19 @@ int main(int argc, char** argv) {
   std::FILE* text = is_json ? stderr : stdout;
   for (const int grid : grids) {
     const Scene scene = bench::terrain_scene(grid, width_px, height_px, has_normals);
-    const std::string name =
-        fmt::format("terrain, {} triangles{}", scene.geometry.triangle_count(), has_normals ? ", vertex normals" : "");
+    const std::string name = fmt::format("terrain, {} triangles{}", scene.geometry.triangle_count(),
+                                         has_normals ? ", vertex normals" : "");
     fmt::print(text, "\n{}; one thread\n", name);
     for (const Isa isa : isas)
       for (const int samples_per_pixel : sample_counts) {
-        const Measurement m = measure(scene, isa, samples_per_pixel, isa == Isa::scalar ? most_samples / 4 : most_samples);
+        const Measurement m =
+            measure(scene, isa, samples_per_pixel, isa == Isa::scalar ? most_samples / 4 : most_samples);
         const double fraction = m.bare_seconds / m.render_seconds;
-        fmt::print(text, "  {:<6} {:>4} samples a pixel: {:6.2f} M samples/s, limit {:6.2f}, fraction_of_limit {:.3f}\n",
-                   isa_name(isa), samples_per_pixel, 1e-6 * m.samples / m.render_seconds,
-                   1e-6 * m.samples / m.bare_seconds, fraction);
+        fmt::print(
+            text,
+            "  {:<6} {:>4} samples a pixel: {:6.2f} M samples/s, limit {:6.2f}, fraction_of_limit {:.3f}\n",
+            isa_name(isa), samples_per_pixel, 1e-6 * m.samples / m.render_seconds,
+            1e-6 * m.samples / m.bare_seconds, fraction);
         nlohmann::ordered_json stages;
         fmt::print(text, "        ");
         for (const auto& [stage, share] : m.stage_shares) {
@@ -208,4 +214,7 @@ int main(int argc, char** argv) {
       if (row["scene"] == name) row["speed_up_2_threads"] = ratio;
   }
   if (is_json) fmt::print("{}\n", json.dump(2));
+} catch (const std::exception& error) {
+  fmt::print(stderr, "error: {}\n", error.what());
+  return 2;
 }

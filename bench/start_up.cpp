@@ -1,18 +1,17 @@
 // From an OBJ file to the first pixels: where the time goes, for a mesh of a million triangles.
 
-#include <fmt/format.h>
-#include <unistd.h>
+#include "geometry/obj_reader.h"
+#include "geometry/raycast.h"
+#include "render/kernel.h"
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
-
-#include "geometry/obj_reader.h"
-#include "geometry/raycast.h"
-#include "render/kernel.h"
+#include <unistd.h>
 
 namespace {
 
@@ -61,7 +60,8 @@ int main(int argc, char** argv) {
   app.add_option("--cells", cells, "The mesh has 2 cells^2 triangles")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / fmt::format("etendue-start-up-{}", getpid());
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("etendue-start-up-{}", getpid());
   std::filesystem::create_directory(folder);
   write_obj(folder / "flat.obj", cells, false);
   write_obj(folder / "smooth.obj", cells, true);
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   camera.per_px_y = {0, 0, 1.0f / 16};
   Lights lights;
   lights.add({1, 1, 1}, "sheet", LightKind::mesh, lights.meshes.add(geometry, 0));
-  const Scene scene{camera,     PixelFilter::box(), std::move(geometry), std::move(rays),
+  const Scene scene{camera,      PixelFilter::box(), std::move(geometry), std::move(rays),
                     {Diffuse{}}, std::move(lights),  SamplerKind::sobol};
   RenderSettings settings;
   settings.samples_per_pixel = 1;
@@ -106,7 +106,8 @@ int main(int argc, char** argv) {
     fmt::print("{}\n", json.dump(2));
     return 0;
   }
-  fmt::print("{} triangles, {:.0f} MB of OBJ: {:.2f} s to the first pixels\n", mesh.triangle_count(), megabytes, total);
+  fmt::print("{} triangles, {:.0f} MB of OBJ: {:.2f} s to the first pixels\n", mesh.triangle_count(),
+             megabytes, total);
   const auto share = [&](const char* what, double seconds) {
     fmt::print("  {:<22} {:.2f} s, {:.0f} %\n", what, seconds, 100 * seconds / total);
   };

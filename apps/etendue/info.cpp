@@ -1,9 +1,3 @@
-#include <fmt/format.h>
-
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <sstream>
-
 #include "bsdf/bsdf.h"
 #include "commands.h"
 #include "film/filter.h"
@@ -14,6 +8,11 @@
 #include "sampler/sampler.h"
 #include "scene/load_shape.h"
 
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
 namespace etendue::app {
 
 namespace {
@@ -21,7 +20,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string_view type_name(Parameter::Type type) {
-  constexpr std::array names{"boolean", "integer", "float", "string", "color", "point", "vector", "transform"};
+  constexpr std::array names{"boolean", "integer", "float",  "string",
+                             "color",   "point",   "vector", "transform"};
   return names[std::size_t(type)];
 }
 
@@ -53,7 +53,8 @@ Json dependency_versions() {
 
 Json describe_program() {
   Json isas = Json::array();
-  for (const Isa isa : available_isas()) isas.push_back({{"name", isa_name(isa)}, {"lanes", lane_count(isa)}});
+  for (const Isa isa : available_isas())
+    isas.push_back({{"name", isa_name(isa)}, {"lanes", lane_count(isa)}});
   Json json;
   json["version"] = ETENDUE_VERSION;
   json["instruction_sets"] = isas;
@@ -96,7 +97,8 @@ void print(const Json& json) {
 }  // namespace
 
 void add_info_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("info", "Version, instruction sets, and every plugin with its parameters");
+  CLI::App* command =
+      app.add_subcommand("info", "Version, instruction sets, and every plugin with its parameters");
   const auto is_json = std::make_shared<bool>(false);
   command->add_flag("--json", *is_json, "As JSON");
   command->callback([is_json, &exit_code] {

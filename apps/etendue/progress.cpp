@@ -1,10 +1,9 @@
 #include "progress.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <fmt/format.h>
+#include <unistd.h>
 #include <utility>
 
 namespace etendue::app {
@@ -33,8 +32,8 @@ void Progress::update(double fraction) {
   if (is_terminal_) {
     constexpr int width = 40;
     const int full = std::clamp(int(fraction * width), 0, width);
-    fmt::print(stderr, "\r{} [{:#<{}}{: <{}}] {:3.0f} % {} \x1b[K", what_, "", full, "", width - full, 100 * fraction,
-               is_last ? duration_text(elapsed_s) : left);
+    fmt::print(stderr, "\r{} [{:#<{}}{: <{}}] {:3.0f} % {} \x1b[K", what_, "", full, "", width - full,
+               100 * fraction, is_last ? duration_text(elapsed_s) : left);
     has_bar_ = true;
   } else {
     fmt::print(stderr, "{}: {:.0f} %, {}\n", what_, 100 * fraction, left);

@@ -1,24 +1,24 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <sys/resource.h>
-
-#include <atomic>
-#include <csignal>
-#include <cstdio>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
+#include "render/render.h"
 
 #include "base/hash.h"
 #include "commands.h"
 #include "film/image_file.h"
 #include "film/temporary_file.h"
 #include "progress.h"
-#include "render/render.h"
 #include "render/thread_limit.h"
 #include "replay.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sys/resource.h>
 
 namespace etendue::app {
 
@@ -54,16 +54,17 @@ RenderSettings settings_for(const Options& options, const LoadedScene& loaded) {
   RenderSettings settings;
   settings.samples_per_pixel = options.samples_per_pixel.value_or(loaded.samples_per_pixel);
   if (settings.samples_per_pixel < 1)
-    throw InputError(fmt::format("--spp {}: at least 1 sample a pixel is needed", settings.samples_per_pixel));
+    throw InputError(
+        fmt::format("--spp {}: at least 1 sample a pixel is needed", settings.samples_per_pixel));
   settings.replicates = options.replicates.value_or(default_replicates(settings.samples_per_pixel));
   if (settings.replicates < 1)
     throw InputError(fmt::format("--replicates {}: at least 1 is needed", settings.replicates));
   if (settings.samples_per_pixel % settings.replicates != 0)
-    throw InputError(fmt::format("--replicates {}: {} samples a pixel cannot be split into {} equal parts\n"
-                                 "choose a number that divides {}, or take --spp {}",
-                                 settings.replicates, settings.samples_per_pixel, settings.replicates,
-                                 settings.samples_per_pixel,
-                                 (settings.samples_per_pixel / settings.replicates + 1) * std::int64_t(settings.replicates)));
+    throw InputError(fmt::format(
+        "--replicates {}: {} samples a pixel cannot be split into {} equal parts\n"
+        "choose a number that divides {}, or take --spp {}",
+        settings.replicates, settings.samples_per_pixel, settings.replicates, settings.samples_per_pixel,
+        (settings.samples_per_pixel / settings.replicates + 1) * std::int64_t(settings.replicates)));
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.isa = options.isa.empty() ? available_isas().back() : isa_from_name(options.isa);
@@ -72,9 +73,11 @@ RenderSettings settings_for(const Options& options, const LoadedScene& loaded) {
 }
 
 /// The command line's integrator where it names one; the file's parameters hold where both name the same.
-IntegratorSettings integrator_for(const Options& options, const LoadedScene& loaded, std::vector<UnreadKey>& unread) {
+IntegratorSettings integrator_for(const Options& options, const LoadedScene& loaded,
+                                  std::vector<UnreadKey>& unread) {
   const std::string& in_file = loaded.integrator.type;
-  if (!options.integrator.empty() && options.integrator != in_file) return integrator_from_name(options.integrator);
+  if (!options.integrator.empty() && options.integrator != in_file)
+    return integrator_from_name(options.integrator);
   return loaded.integrator.family.empty() ? IntegratorSettings{} : make_integrator(loaded.integrator, unread);
 }
 
@@ -116,13 +119,16 @@ std::int64_t peak_memory_bytes() {
   return std::int64_t(usage.ru_maxrss) * 1024;
 }
 
-nlohmann::ordered_json stats(const Options& options, const RenderSettings& settings, const SceneDesc& description,
-                             const LoadedScene& loaded, const RenderResult& result, int threads) {
+nlohmann::ordered_json stats(const Options& options, const RenderSettings& settings,
+                             const SceneDesc& description, const LoadedScene& loaded,
+                             const RenderResult& result, int threads) {
   const Color<double> mean = result.film.mean();
   nlohmann::ordered_json json;
   json["scene"] = options.scene_file;
   json["dialect"] = dialect_name(description.dialect);
   json["integrator"] = integrator_name(settings.integrator.kind);
+  if (settings.integrator.kind == IntegratorKind::mis)
+    json["heuristic"] = heuristic_name(settings.integrator.heuristic);
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = settings.samples_per_pixel;
   json["replicates"] = settings.replicates;
@@ -156,15 +162,27 @@ void write_text_file(const std::filesystem::path& file, const std::string& text)
 
 void warn(const Options& options, const std::vector<std::string>& warnings) {
   if (warnings.empty()) return;
-  if (options.is_strict) throw InputError(fmt::format("{}\n--strict makes warnings errors", fmt::join(warnings, "\n")));
+  if (options.is_strict)
+    throw InputError(fmt::format("{}\n--strict makes warnings errors", fmt::join(warnings, "\n")));
   if (options.is_quiet) return;
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 }
 
+/// As one word of a shell.
+std::string shell_quoted(const std::string& text) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
+  if (text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 /// The command line that computes the same samples as this one, for one of them.
 std::string replay_command(const Options& options, const InvalidSample& sample) {
-  std::string command = "etendue render " + options.scene_file;
-  const auto add = [&](std::string_view option, const auto& value) { command += fmt::format(" {} {}", option, value); };
+  std::string command = "etendue render " + shell_quoted(options.scene_file);
+  const auto add = [&](std::string_view option, const auto& value) {
+    command += fmt::format(" {} {}", option, value);
+  };
   if (!options.integrator.empty()) add("--integrator", options.integrator);
   if (!options.sampler.empty()) add("--sampler", options.sampler);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
@@ -182,7 +200,8 @@ void report_invalid(const Options& options, const RenderResult& result) {
   for (const InvalidSample& sample : result.invalid)
     fmt::print(stderr, "  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y,
                sample.replicate, sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
-  fmt::print(stderr, "to see how the first of them came about:\n  {}\n", replay_command(options, result.invalid.front()));
+  fmt::print(stderr, "to see how the first of them came about:\n  {}\n",
+             replay_command(options, result.invalid.front()));
 }
 
 int run(const Options& options) {
@@ -209,12 +228,14 @@ int run(const Options& options) {
     fmt::print(stderr, "{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n",
                options.scene_file, dialect_name(description.dialect), description.dialect_reason,
                loaded.scene.camera.width_px, loaded.scene.camera.height_px, settings.samples_per_pixel,
-               settings.replicates, integrator_name(settings.integrator.kind), threads, isa_name(settings.isa));
+               settings.replicates, integrator_name(settings.integrator.kind), threads,
+               isa_name(settings.isa));
 
   std::signal(SIGINT, handle_interrupt);
   const RenderResult result = [&] {
     Progress progress("render", options.is_quiet);
-    return render(loaded.scene, settings, [&](double fraction) { progress.update(fraction); }, &stop_requested);
+    return render(
+        loaded.scene, settings, [&](double fraction) { progress.update(fraction); }, &stop_requested);
   }();
   report_invalid(options, result);
 
@@ -225,21 +246,30 @@ int run(const Options& options) {
                     {"replicates", fmt::format("0-{}", settings.replicates - 1)},
                     {"samplesPerPixel", std::to_string(settings.samples_per_pixel)},
                     {"integrator", std::string(integrator_name(settings.integrator.kind))},
+                    {"isa", std::string(isa_name(settings.isa))},
+                    {"dialect", std::string(dialect_name(description.dialect))},
                     {"sampler", std::string(sampler_name(loaded.scene.sampler))},
                     {"software", "Etendue " ETENDUE_VERSION}};
-  const std::int64_t pixels = std::int64_t(image.width) * image.height, rendered = count_rendered(result.film);
-  if (result.is_interrupted) image.metadata.emplace_back("pixelsNotRendered", std::to_string(pixels - rendered));
+  const std::int64_t pixels = std::int64_t(image.width) * image.height,
+                     rendered = count_rendered(result.film);
+  if (result.is_interrupted)
+    image.metadata.emplace_back("pixelsNotRendered", std::to_string(pixels - rendered));
+  if (settings.integrator.kind == IntegratorKind::mis)
+    image.metadata.emplace_back("heuristic", heuristic_name(settings.integrator.heuristic));
   for (const std::filesystem::path output : options.outputs)
     output.extension() == ".png" ? write_png(output, image) : write_exr(output, image);
   if (!options.stats_file.empty())
     write_text_file(options.stats_file,
                     stats(options, settings, description, loaded, result, threads).dump(2) + "\n");
   if (!options.is_quiet)
-    fmt::print(stderr, "{} in {}: {:.1f} million samples a second\n", result.is_interrupted ? "interrupted" : "done",
-               duration_text(result.seconds), 1e-6 * double(result.counts.samples) / result.seconds);
+    fmt::print(stderr, "{} in {}: {:.1f} million samples a second\n",
+               result.is_interrupted ? "interrupted" : "done", duration_text(result.seconds),
+               1e-6 * double(result.counts.samples) / result.seconds);
   if (result.is_interrupted && !options.is_quiet)
-    fmt::print(stderr, "saved {} of {} pixels; the others have radiance 0 and a standard error that is not a number\n",
-               rendered, pixels);
+    fmt::print(
+        stderr,
+        "saved {} of {} pixels; the others have radiance 0 and a standard error that is not a number\n",
+        rendered, pixels);
   return result.is_interrupted ? interrupted : done;
 }
 
@@ -249,8 +279,9 @@ void add_render_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("render", "Render a scene to EXR and PNG images");
   const auto options = std::make_shared<Options>();
   command->add_option("SCENE", options->scene_file, "Scene file (XML of the Nori family)")->required();
-  command->add_option("-o,--output", options->outputs,
-                      "Image to write, .exr (radiance and its standard error) or .png (sRGB); may be repeated")
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "Image to write, .exr (radiance and its standard error) or .png (sRGB); may be repeated")
       ->allow_extra_args(false);
   command->add_option("--integrator", options->integrator, "Instead of the file's; see etendue info");
   command->add_option("--sampler", options->sampler, "Instead of the file's: independent or sobol");
@@ -261,15 +292,19 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--seed", options->seed, "Another seed: other random numbers")
       ->capture_default_str()
       ->check([](const std::string& text) {  // CLI11 would wrap a negative number around.
-        return text.starts_with('-') ? fmt::format("{} is negative; expected a whole number from 0 on", text) : "";
+        return text.starts_with('-') ? fmt::format("{} is negative; expected a whole number from 0 on", text)
+                                     : "";
       });
-  command->add_option("--threads", options->threads, "Threads; 0: all cores")->capture_default_str()->check(CLI::Range(0, 4096));
+  command->add_option("--threads", options->threads, "Threads; 0: all cores")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 4096));
   command->add_option("--isa", options->isa, "Instruction set: scalar, v2, v3 or v4 [the widest here]");
   command->add_option("--stats", options->stats_file, "JSON file for settings, times and counts");
   command->add_option("--dialect", options->dialect, "Read the scene as nori-2012, nori-eth or nori");
   command->add_option("--replay", options->replay,
                       "X,Y,REPLICATE,SAMPLE: compute only this sample, and print each step of it");
-  command->add_flag("--quiet", options->is_quiet, "No progress and no warnings about the scene; bad samples are still reported");
+  command->add_flag("--quiet", options->is_quiet,
+                    "No progress and no warnings about the scene; bad samples are still reported");
   command->add_flag("--strict", options->is_strict, "Warnings, such as an unknown key, are errors");
   command->add_flag("--sample-order", options->is_in_sample_order,
                     "Trace shadow rays in sample order, not aimed: slower, the same image");

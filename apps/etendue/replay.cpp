@@ -62,7 +62,8 @@ SampleId sample_id_from_text(const std::string& text) {
     at = stop + 1;
   }
   constexpr std::int64_t most = 1 << 30;
-  if (at != end + 1 || numbers.size() != 4 || std::abs(numbers[0]) > most || std::abs(numbers[1]) > most)
+  if (at != end + 1 || numbers.size() != 4 || numbers[0] < -most || numbers[0] > most || numbers[1] < -most ||
+      numbers[1] > most)
     throw InputError(
         fmt::format("--replay {}: expected X,Y,REPLICATE,SAMPLE: four whole numbers from 0 on", text));
   return {int(numbers[0]), int(numbers[1]), numbers[2], numbers[3]};
@@ -83,8 +84,9 @@ std::string describe(const Scene& scene, const SampleId& sample, const SampleTra
         "  position        {} m\n"
         "  ng              {}\n"
         "  ns              {}\n",
-        trace.hit->geometry, trace.hit->primitive, trace.hit->material, light_text(scene, trace.hit->light),
-        text(trace.hit->position), text(trace.hit->ng), text(trace.hit->ns));
+        trace.hit->geometry + 1, trace.hit->primitive, trace.hit->material,
+        light_text(scene, trace.hit->light), text(trace.hit->position), text(trace.hit->ng),
+        text(trace.hit->ns));
   else
     all += "hit               nothing\n";
   all += fmt::format("emission seen     {}\n", text(trace.emission));

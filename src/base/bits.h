@@ -19,20 +19,23 @@ xsimd::batch<std::uint32_t, A> reverse_bits(const xsimd::batch<std::uint32_t, A>
   const U low_half(0x0f0f0f0fu);
   [[maybe_unused]] const U low = x & low_half, high = (x >> 4) & low_half;
 #if defined(__SSSE3__)
-  const __m128i reversed_in_high = _mm_setr_epi8(0, -128, 64, -64, 32, -96, 96, -32, 16, -112, 80, -48, 48, -80, 112, -16);
+  const __m128i reversed_in_high =
+      _mm_setr_epi8(0, -128, 64, -64, 32, -96, 96, -32, 16, -112, 80, -48, 48, -80, 112, -16);
   const __m128i reversed_in_low = _mm_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15);
   const __m128i bytes_reversed = _mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
 #if defined(__AVX512BW__)
-  const __m512i bytes = _mm512_or_si512(_mm512_shuffle_epi8(_mm512_broadcast_i32x4(reversed_in_high), low.data),
-                                        _mm512_shuffle_epi8(_mm512_broadcast_i32x4(reversed_in_low), high.data));
+  const __m512i bytes =
+      _mm512_or_si512(_mm512_shuffle_epi8(_mm512_broadcast_i32x4(reversed_in_high), low.data),
+                      _mm512_shuffle_epi8(_mm512_broadcast_i32x4(reversed_in_low), high.data));
   return U(_mm512_shuffle_epi8(bytes, _mm512_broadcast_i32x4(bytes_reversed)));
 #elif defined(__AVX2__)
-  const __m256i bytes = _mm256_or_si256(_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(reversed_in_high), low.data),
-                                        _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(reversed_in_low), high.data));
+  const __m256i bytes =
+      _mm256_or_si256(_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(reversed_in_high), low.data),
+                      _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(reversed_in_low), high.data));
   return U(_mm256_shuffle_epi8(bytes, _mm256_broadcastsi128_si256(bytes_reversed)));
 #else
-  const __m128i bytes =
-      _mm_or_si128(_mm_shuffle_epi8(reversed_in_high, low.data), _mm_shuffle_epi8(reversed_in_low, high.data));
+  const __m128i bytes = _mm_or_si128(_mm_shuffle_epi8(reversed_in_high, low.data),
+                                     _mm_shuffle_epi8(reversed_in_low, high.data));
   return U(_mm_shuffle_epi8(bytes, bytes_reversed));
 #endif
 #else

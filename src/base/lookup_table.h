@@ -1,19 +1,19 @@
 // A growing table read by lane-varying index, fast while it is short.
 #pragma once
 
-#include <vector>
-
 #include "base/simd.h"
+
+#include <vector>
 
 namespace etendue {
 
-/// While it has no more entries than a packet has lanes, the whole table is one register, and a look-up is a permutation
-/// (one cycle a packet) instead of a gather (one a lane).
+/// While it has no more entries than a packet has lanes, the whole table is one register, and a look-up is a
+/// permutation (one cycle a packet) instead of a gather (one a lane).
 template <class T>
 class LookupTable {
  public:
   void push_back(const T& value) {
-    values_.resize(std::size_t(size_) + 1 + padding);
+    values_.resize(std::size_t(size_) + 1 + widest_lanes);
     values_[std::size_t(size_++)] = value;
   }
   std::int32_t size() const { return size_; }
@@ -42,7 +42,6 @@ class LookupTable {
   }
 
  private:
-  static constexpr int padding = 16;  ///< Lanes of the widest load.
   std::vector<T> values_;
   std::int32_t size_ = 0;
 };

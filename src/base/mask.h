@@ -13,7 +13,8 @@ xsimd::batch<float, A> select(const xsimd::batch_bool<float, A>& m, const xsimd:
   return xsimd::select(m, a, b);
 }
 template <class A>
-xsimd::batch<std::int32_t, A> select(const xsimd::batch_bool<float, A>& m, const xsimd::batch<std::int32_t, A>& a,
+xsimd::batch<std::int32_t, A> select(const xsimd::batch_bool<float, A>& m,
+                                     const xsimd::batch<std::int32_t, A>& a,
                                      const xsimd::batch<std::int32_t, A>& b) {
   return xsimd::select(lanes::mask_for_ints(m), a, b);
 }
@@ -31,7 +32,8 @@ bool all(const xsimd::batch_bool<float, A>& m) {
 
 inline bool mask_and(bool a, bool b) { return a && b; }
 template <class A>
-xsimd::batch_bool<float, A> mask_and(const xsimd::batch_bool<float, A>& a, const xsimd::batch_bool<float, A>& b) {
+xsimd::batch_bool<float, A> mask_and(const xsimd::batch_bool<float, A>& a,
+                                     const xsimd::batch_bool<float, A>& b) {
   return a & b;
 }
 inline bool mask_not(bool a) { return !a; }
@@ -47,18 +49,21 @@ M mask_and(const M& a, const M& b, const Ms&... rest) {
 /// Integer comparisons as a mask for floats.
 inline bool equal(std::int32_t a, std::int32_t b) { return a == b; }
 template <class A>
-xsimd::batch_bool<float, A> equal(const xsimd::batch<std::int32_t, A>& a, const xsimd::batch<std::int32_t, A>& b) {
+xsimd::batch_bool<float, A> equal(const xsimd::batch<std::int32_t, A>& a,
+                                  const xsimd::batch<std::int32_t, A>& b) {
   return lanes::mask_for_floats(a == b);
 }
 inline bool less(std::int32_t a, std::int32_t b) { return a < b; }
 template <class A>
-xsimd::batch_bool<float, A> less(const xsimd::batch<std::int32_t, A>& a, const xsimd::batch<std::int32_t, A>& b) {
+xsimd::batch_bool<float, A> less(const xsimd::batch<std::int32_t, A>& a,
+                                 const xsimd::batch<std::int32_t, A>& b) {
   return lanes::mask_for_floats(a < b);
 }
 inline bool less(std::uint32_t a, std::uint32_t b) { return a < b; }
 /// Unsigned: both are shifted into the signed range, because SSE and AVX2 compare signed only.
 template <class A>
-xsimd::batch_bool<float, A> less(const xsimd::batch<std::uint32_t, A>& a, const xsimd::batch<std::uint32_t, A>& b) {
+xsimd::batch_bool<float, A> less(const xsimd::batch<std::uint32_t, A>& a,
+                                 const xsimd::batch<std::uint32_t, A>& b) {
   const xsimd::batch<std::uint32_t, A> sign(0x80000000u);
   return less(lanes::recast<std::int32_t>(a ^ sign), lanes::recast<std::int32_t>(b ^ sign));
 }

@@ -1,4 +1,5 @@
-// Lanes: one float, or a batch of floats, behind the same names; how they meet memory. The only file to include xsimd.
+// Lanes: one float, or a batch of floats, behind the same names; how they meet memory. The only file to
+// include xsimd.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,9 @@
 #include <xsimd/xsimd.hpp>
 
 namespace etendue {
+
+/// Lanes of the widest batch that any kernel is built for.
+inline constexpr int widest_lanes = 16;
 
 #ifdef ETENDUE_SCALAR_LANES
 using NativeLanes = float;
@@ -97,7 +101,8 @@ V load_lanes(const T* p) {
 inline float gather(const float* base, std::int32_t index) { return base[index]; }
 inline std::int32_t gather(const std::int32_t* base, std::int32_t index) { return base[index]; }
 inline std::uint32_t gather(const std::uint32_t* base, std::int32_t index) { return base[index]; }
-/// By the instruction where there is one: xsimd 8's own gather goes through memory, lane by lane, even on AVX-512.
+/// By the instruction where there is one: xsimd 8's own gather goes through memory, lane by lane, even on
+/// AVX-512.
 template <class T, class A>
 xsimd::batch<T, A> gather(const T* base, const xsimd::batch<std::int32_t, A>& index) {
 #if defined(__AVX512F__)

@@ -23,12 +23,6 @@ xsimd::batch<float, A> max(const xsimd::batch<float, A>& a, const xsimd::batch<f
   return xsimd::max(a, b);
 }
 
-inline std::int32_t min_int(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
-template <class A>
-xsimd::batch<std::int32_t, A> min_int(const xsimd::batch<std::int32_t, A>& a, const xsimd::batch<std::int32_t, A>& b) {
-  return xsimd::min(a, b);
-}
-
 inline float exp(float x) { return std::exp(x); }
 inline float log(float x) { return std::log(x); }
 inline float expm1(float x) { return std::expm1(x); }
@@ -60,7 +54,8 @@ inline void sincos_turns(float t, float& sine, float& cosine) {
   cosine = std::cos(two_pi * t);
 }
 template <class A>
-void sincos_turns(const xsimd::batch<float, A>& t, xsimd::batch<float, A>& sine, xsimd::batch<float, A>& cosine) {
+void sincos_turns(const xsimd::batch<float, A>& t, xsimd::batch<float, A>& sine,
+                  xsimd::batch<float, A>& cosine) {
   constexpr float two_pi = 6.28318530717958647692f;
   const auto pair = xsimd::sincos(t * two_pi);
   sine = pair.first;

@@ -10,8 +10,8 @@ inline constexpr float pi = 3.14159265358979323846f;
 inline constexpr float inv_pi = 0.31830988618379067154f;
 
 /// Barycentric coordinates (of vertices 1 and 2), uniform over a triangle; pdf_area = 1 / area.
-/// The unit square is folded along its diagonal, which keeps distances (and so stratification) better than the
-/// square-root map: Heitz 2019, "A low-distortion map between triangle and square".
+/// The unit square is folded along its diagonal, which keeps distances (and so stratification) better than
+/// the square-root map: Heitz 2019, "A low-distortion map between triangle and square".
 template <class F>
 Vec2<F> square_to_triangle(const Vec2<F>& u) {
   const auto is_above = u.y > u.x;

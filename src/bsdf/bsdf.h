@@ -1,18 +1,18 @@
 // The family of surface scattering models.
 //
-// To add one: write bsdf/NAME.h with the three functions of the concept below, templated on the lane type, and its
-// plugin description in bsdf/NAME.cpp; add it to the variant and to the table in bsdf.cpp; add it to the chi-squared
-// test's list in tests/statistical/bsdf_test.cpp.
+// To add one: write bsdf/NAME.h with the three functions of the concept below, templated on the lane type,
+// and its plugin description in bsdf/NAME.cpp; add it to the variant and to the table in bsdf.cpp; add it to
+// the chi-squared test's list in tests/statistical/bsdf_test.cpp.
 #pragma once
-
-#include <concepts>
-#include <variant>
-#include <vector>
 
 #include "bsdf/bsdf_sample.h"
 #include "bsdf/diffuse.h"
 #include "bsdf/phong.h"
 #include "scenefile/parameters.h"
+
+#include <concepts>
+#include <variant>
+#include <vector>
 
 namespace etendue {
 
@@ -37,7 +37,8 @@ Bsdf make_bsdf(const Object& description, std::vector<UnreadKey>& unread);
 
 /// f(model, lanes) for each distinct material among the lanes of `m`, with the model's own type.
 template <class F, class Function>
-void for_each_material(const std::vector<Bsdf>& materials, const Int<F>& material, const Mask<F>& m, Function&& f) {
+void for_each_material(const std::vector<Bsdf>& materials, const Int<F>& material, const Mask<F>& m,
+                       Function&& f) {
   for_each_unique<F>(material, m, [&](std::int32_t id, const Mask<F>& lanes) {
     std::visit([&](const auto& bsdf) { f(bsdf, lanes); }, materials[std::size_t(id)]);
   });

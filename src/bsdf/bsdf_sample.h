@@ -7,7 +7,8 @@
 
 namespace etendue {
 
-/// A direction drawn from a BSDF. Where the density is 0 the sample carries nothing: it fell below the horizon.
+/// A direction drawn from a BSDF. Where the density is 0 the sample carries nothing: it fell below the
+/// horizon.
 template <class F>
 struct BsdfSample {
   Vec3<F> wi_local;

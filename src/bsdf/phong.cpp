@@ -1,9 +1,8 @@
 #include "bsdf/phong.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <string>
 
 namespace etendue {
@@ -26,9 +25,12 @@ const std::array<Convention, 3> conventions{{
 
 /// The convention all of whose rivals' own names are absent; names that two conventions share decide nothing.
 const Convention& convention_of(const Parameters& parameters) {
-  const bool has_short = parameters.is_stated("kd") || parameters.is_stated("ks") || parameters.is_stated("n");
-  const bool has_long = parameters.is_stated("diffuseReflectance") || parameters.is_stated("specularReflectance");
-  const bool has_shininess = parameters.is_stated("shininess"), has_exponent = parameters.is_stated("exponent");
+  const bool has_short =
+      parameters.is_stated("kd") || parameters.is_stated("ks") || parameters.is_stated("n");
+  const bool has_long =
+      parameters.is_stated("diffuseReflectance") || parameters.is_stated("specularReflectance");
+  const bool has_shininess = parameters.is_stated("shininess"),
+             has_exponent = parameters.is_stated("exponent");
   if (has_short + has_shininess + has_exponent > 1 || (has_short && has_long))
     throw InputError(parameters.object().location, "this phong mixes the names of different conventions",
                      "use one of: kd, ks, n | diffuseReflectance, specularReflectance, shininess | "
@@ -41,14 +43,17 @@ const Convention& convention_of(const Parameters& parameters) {
 const Plugin phong_plugin{
     "bsdf",
     "phong",
-    "Modified Phong: f = kd / pi + ks (n + 2) / (2 pi) cos^n; black from behind. Three conventions, by names.",
+    "Modified Phong: f = kd / pi + ks (n + 2) / (2 pi) cos^n; black from behind. Three conventions, by "
+    "names.",
     {{"kd", Type::color, "0.5", "", "Diffuse reflectance (EPFL); not rescaled"},
      {"ks", Type::color, "0.5", "", "Specular reflectance (EPFL); not rescaled"},
      {"n", Type::real, "20", "", "Exponent of the lobe (EPFL)"},
      {"diffuseReflectance", Type::color, "0.5", "", "Diffuse reflectance (McGill, Mitsuba 0.x)"},
      {"specularReflectance", Type::color, "0.2", "", "Specular reflectance (McGill, Mitsuba 0.x)"},
-     {"shininess", Type::real, "30", "", "Exponent (McGill: both are scaled by 0.99 / max(kd + ks) where that exceeds 1)"},
-     {"exponent", Type::real, "30", "", "Exponent (Mitsuba 0.x: both are scaled by 1 / max(kd + ks) where that exceeds 1)"}},
+     {"shininess", Type::real, "30", "",
+      "Exponent (McGill: both are scaled by 0.99 / max(kd + ks) where that exceeds 1)"},
+     {"exponent", Type::real, "30", "",
+      "Exponent (Mitsuba 0.x: both are scaled by 1 / max(kd + ks) where that exceeds 1)"}},
     {}};
 
 Phong make_phong(const Object& description, std::vector<UnreadKey>& unread) {
@@ -60,8 +65,9 @@ Phong make_phong(const Object& description, std::vector<UnreadKey>& unread) {
   const double exponent = parameters.real(names.exponent);
   constexpr double largest_exponent = 1e6;
   if (!(exponent >= 0 && exponent <= largest_exponent))
-    throw InputError(parameters.location(names.exponent),
-                     fmt::format("'{}' is {}; it must be from 0 to {}", names.exponent, exponent, largest_exponent));
+    throw InputError(
+        parameters.location(names.exponent),
+        fmt::format("'{}' is {}; it must be from 0 to {}", names.exponent, exponent, largest_exponent));
   phong.exponent = float(exponent);
   const Colorf sum = phong.kd + phong.ks;
   const float largest = std::max({sum.r, sum.g, sum.b});

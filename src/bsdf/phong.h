@@ -9,9 +9,10 @@
 
 namespace etendue {
 
-/// f = kd / pi + ks (n + 2) / (2 pi) cos^n(alpha), alpha between wi and the mirror image of wo (Lafortune and Willems
-/// 1994, "Using the modified Phong reflectance model for physically based rendering", eq. 3). Sampling takes the lobe
-/// with probability `specular_probability`, with density (n + 1) / (2 pi) cos^n(alpha), else the cosine.
+/// f = kd / pi + ks (n + 2) / (2 pi) cos^n(alpha), alpha between wi and the mirror image of wo (Lafortune and
+/// Willems 1994, "Using the modified Phong reflectance model for physically based rendering", eq. 3).
+/// Sampling takes the lobe with probability `specular_probability`, with density (n + 1) / (2 pi)
+/// cos^n(alpha), else the cosine.
 struct Phong {
   Colorf kd{0.5f, 0.5f, 0.5f}, ks{0.5f, 0.5f, 0.5f};
   float exponent = 20;
@@ -62,7 +63,8 @@ struct Phong {
 };
 
 extern const Plugin phong_plugin;
-/// The convention (whose names, defaults and rescaling) follows from the names used; see docs/scene_format.md.
+/// The convention (whose names, defaults and rescaling) follows from the names used; see
+/// docs/scene_format.md.
 Phong make_phong(const Object& description, std::vector<UnreadKey>& unread);
 
 }  // namespace etendue

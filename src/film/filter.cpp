@@ -8,10 +8,16 @@ namespace {
 
 using Type = Parameter::Type;
 
-const Plugin box_plugin{"rfilter", "box", "Constant within its radius.",
-                        {{"radius", Type::real, "0.5", "px", "Half the width"}}, {}};
-const Plugin tent_plugin{"rfilter", "tent", "Falls linearly to 0 at its radius.",
-                         {{"radius", Type::real, "1", "px", "Half the width"}}, {}};
+const Plugin box_plugin{"rfilter",
+                        "box",
+                        "Constant within its radius.",
+                        {{"radius", Type::real, "0.5", "px", "Half the width"}},
+                        {}};
+const Plugin tent_plugin{"rfilter",
+                         "tent",
+                         "Falls linearly to 0 at its radius.",
+                         {{"radius", Type::real, "1", "px", "Half the width"}},
+                         {}};
 const Plugin gaussian_plugin{"rfilter",
                              "gaussian",
                              "A Gaussian minus its value at the radius.",
@@ -66,13 +72,17 @@ PixelFilter PixelFilter::tent(double radius_px) {
 PixelFilter PixelFilter::gaussian(double radius_px, double stddev_px) {
   const double edge = std::exp(-0.5 * radius_px * radius_px / (stddev_px * stddev_px));
   const double scale = stddev_px * std::sqrt(std::acos(0.0));  // sigma sqrt(pi / 2)
-  const auto integral = [=](double x) { return scale * std::erf(x / (stddev_px * std::sqrt(2.0))) - edge * x; };
+  const auto integral = [=](double x) {
+    return scale * std::erf(x / (stddev_px * std::sqrt(2.0))) - edge * x;
+  };
   return {radius_px, [=](double x) { return integral(x) - integral(-radius_px); }};
 }
 
 PixelFilter make_filter(const Object& description, std::vector<UnreadKey>& unread) {
-  if (description.type == "box") return PixelFilter::box(positive({description, box_plugin, unread}, "radius"));
-  if (description.type == "tent") return PixelFilter::tent(positive({description, tent_plugin, unread}, "radius"));
+  if (description.type == "box")
+    return PixelFilter::box(positive({description, box_plugin, unread}, "radius"));
+  if (description.type == "tent")
+    return PixelFilter::tent(positive({description, tent_plugin, unread}, "radius"));
   if (description.type == "gaussian") {
     const Parameters parameters(description, gaussian_plugin, unread);
     return PixelFilter::gaussian(positive(parameters, "radius"), positive(parameters, "stddev"));

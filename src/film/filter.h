@@ -1,20 +1,20 @@
 // Pixel filters, importance-sampled: a sample belongs to one pixel and lies where the filter puts it.
 #pragma once
 
-#include <string_view>
-#include <vector>
-
 #include "base/simd_math.h"
 #include "base/vec.h"
 #include "scenefile/parameters.h"
+
+#include <string_view>
+#include <vector>
 
 namespace etendue {
 
 const std::vector<Plugin>& filter_plugins();
 
-/// A separable, symmetric, non-negative filter as the inverse of its cumulative distribution along one axis, tabulated and
-/// interpolated linearly. Sampling it gives every sample weight 1, so the pixel is the plain mean of its samples
-/// (Ernst, Stamminger and Greiner 2006, "Filter importance sampling").
+/// A separable, symmetric, non-negative filter as the inverse of its cumulative distribution along one axis,
+/// tabulated and interpolated linearly. Sampling it gives every sample weight 1, so the pixel is the plain
+/// mean of its samples (Ernst, Stamminger and Greiner 2006, "Filter importance sampling").
 class PixelFilter {
  public:
   /// `box` (radius 0.5 px unless given).
@@ -44,8 +44,9 @@ class PixelFilter {
   /// `cumulative(x)` is proportional to the integral of the filter from -radius to x.
   template <class Cumulative>
   PixelFilter(double radius_px, const Cumulative& cumulative);
-  /// Quantiles of the left half, -radius to 0, at t = sqrt(2 u) = i / intervals: evenly spaced in t, they stand close
-  /// enough in the tails, where filters end in a slope. One more 0 follows, for the upper neighbour of t = 1.
+  /// Quantiles of the left half, -radius to 0, at t = sqrt(2 u) = i / intervals: evenly spaced in t, they
+  /// stand close enough in the tails, where filters end in a slope. One more 0 follows, for the upper
+  /// neighbour of t = 1.
   std::vector<float> offset_px_;
   bool is_box_ = false;  ///< The inverse is a line: no table is needed.
 };

@@ -6,8 +6,8 @@
 
 namespace etendue {
 
-/// Throws InputError unless a TemporaryFile can stand beside `file` and be renamed to it, as far as can be told
-/// without trying: asked before long work, not after.
+/// Throws InputError unless a TemporaryFile can stand beside `file` and be renamed to it, as far as can be
+/// told without trying: asked before long work, not after.
 void check_destination(const std::filesystem::path& file);
 
 /// Open for writing in the folder of `destination` under a name of its own; renamed to `destination` by

@@ -1,7 +1,6 @@
 #include "geometry/camera.h"
 
 #include <fmt/format.h>
-
 #include <numbers>
 
 namespace etendue {
@@ -58,8 +57,9 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   const Transform world_from_camera =
       parameters.has("toWorld") ? parameters.transform("toWorld") : Transform{};
   if (!is_invertible(world_from_camera))
-    throw InputError(parameters.location("toWorld"), "the camera's transform is singular",
-                     "in a lookat, target must differ from origin and up must not be parallel to the direction");
+    throw InputError(
+        parameters.location("toWorld"), "the camera's transform is singular",
+        "in a lookat, target must differ from origin and up must not be parallel to the direction");
 
   // Which way film x runs is what the generations of the family disagree on; see docs/conventions.md.
   const double image_right = dialect == Dialect::nori ? -1 : 1;
@@ -71,6 +71,9 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   };
   const Vec3<double> origin = transform_point(world_from_camera, {0, 0, 0});
   camera.origin = {float(origin.x), float(origin.y), float(origin.z)};
+  if (!std::isfinite(length_sq(camera.origin)))
+    throw InputError(parameters.location("toWorld"), "the camera is too far from the origin to compute with",
+                     "scale the scene to common sizes");
   camera.at_film_origin = to_world({-image_right * half_width, 0.5 * px * camera.height_px, 1});
   camera.per_px_x = to_world({image_right * px, 0, 0});
   camera.per_px_y = to_world({0, -px, 0});

@@ -19,8 +19,8 @@ struct CameraRay {
 struct Camera {
   int width_px = 1280, height_px = 720;
   Vec3f origin{0, 0, 0};  ///< m
-  /// Direction = at_film_origin + x * per_px_x + y * per_px_y for film coordinates in pixels from the upper left;
-  /// its component along the optical axis is 1.
+  /// Direction = at_film_origin + x * per_px_x + y * per_px_y for film coordinates in pixels from the upper
+  /// left; its component along the optical axis is 1.
   Vec3f at_film_origin{}, per_px_x{}, per_px_y{};
   float near_clip = 1e-4f, far_clip = 1e4f;  ///< Along the optical axis (m).
 

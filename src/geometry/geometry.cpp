@@ -1,8 +1,8 @@
 #include "geometry/geometry.h"
 
-#include <limits>
-
 #include "base/error.h"
+
+#include <limits>
 
 namespace etendue {
 

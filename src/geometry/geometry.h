@@ -1,12 +1,12 @@
 // All shapes of a scene in shared tables, addressed by the ids that ray casting returns.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "base/simd_math.h"
 #include "base/vec.h"
 #include "geometry/mesh.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace etendue {
 
@@ -17,12 +17,12 @@ struct Sphere {
 
 /// What a surface is made of and whether it shines, by id; -1: none.
 struct SurfaceIds {
-  std::int32_t material = -1;
+  std::int32_t material;
   std::int32_t light = -1;
 };
 
-/// Every mesh's vertices and triangles one behind the other, so that a packet whose lanes hit different meshes still
-/// gathers from one array. A geometry is one mesh or one sphere.
+/// Every mesh's vertices and triangles one behind the other, so that a packet whose lanes hit different
+/// meshes still gathers from one array. A geometry is one mesh or one sphere.
 class Geometry {
  public:
   /// Both return the geometry's id.
@@ -38,8 +38,8 @@ class Geometry {
   std::vector<std::int32_t> has_normals;     ///< 1 where the mesh has vertex normals.
   std::vector<std::int32_t> triangles;       ///< Number of them; 0 for spheres.
   std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 for meshes.
-  // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none. The ray caster reads 16
-  // bytes of each position, so one spare vertex always stands behind the last.
+  // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none. The ray
+  // caster reads 16 bytes of each position, so one spare vertex always stands behind the last.
   std::vector<Vec3f> positions, normals;
   std::vector<Vec2f> uvs;
   // Three global vertex numbers a triangle.

@@ -1,15 +1,15 @@
 // Ray casting: blocks of rays in packets of a given width.
 #pragma once
 
+#include "geometry/geometry.h"
+
 #include <cstdint>
 #include <memory>
 
-#include "geometry/geometry.h"
-
 namespace etendue {
 
-/// Whether neighbouring rays of a packet run side by side: then the packet is traced as one, which is faster; rays
-/// that do not are slower that way.
+/// Whether neighbouring rays of a packet run side by side: then the packet is traced as one, which is faster;
+/// rays that do not are slower that way.
 enum class Coherence { incoherent, coherent };
 
 /// Rays as structure of arrays, read at positions 0 .. count - 1; directions need not be unit.
@@ -17,11 +17,12 @@ struct RaySpan {
   const float *origin_x, *origin_y, *origin_z;
   const float *direction_x, *direction_y, *direction_z;
   const float *t_near, *t_far;
-  const std::int32_t* is_active;  ///< -1: trace it, 0: leave its hit untouched but for geometry = -1.
+  const std::int32_t* is_active;  ///< -1: trace it; 0: its hit has geometry = -1 and nothing else of meaning.
   int count;
 };
 
-/// Where hits go. geometry = -1: none. The normal is geometric, not normalised; barycentric (u, v) belong to vertices 1, 2.
+/// Where hits go. geometry = -1: none. The normal is geometric, not normalised; barycentric (u, v) belong to
+/// vertices 1, 2.
 struct HitSpan {
   float* t;
   float *ng_x, *ng_y, *ng_z;
@@ -38,7 +39,8 @@ struct SegmentSpan {
   float t_far;
 };
 
-/// An acceleration structure over a Geometry, which must outlive it.
+/// An acceleration structure over a Geometry, whose tables it reads where they are: the Geometry must outlive
+/// it and not grow; it may be moved.
 class RayCaster {
  public:
   explicit RayCaster(const Geometry& geometry);
@@ -50,7 +52,8 @@ class RayCaster {
   void closest_hits(const RaySpan& rays, const HitSpan& hits, int width, Coherence coherence) const;
 
   /// Sets is_visible[order[i]] to -1 where nothing lies within segment i, else 0.
-  void unoccluded(const SegmentSpan& segments, std::int32_t* is_visible, int width, Coherence coherence) const;
+  void unoccluded(const SegmentSpan& segments, std::int32_t* is_visible, int width,
+                  Coherence coherence) const;
 
  private:
   struct Embree;

@@ -35,7 +35,8 @@ struct Query {
 #define ETENDUE_QUERY_OCCLUDED(call, scene, query, packet) call(scene, packet, &(query).occluded)
 #define ETENDUE_QUERY_INTERSECT_N(call, valid, scene, query, packet) \
   call(valid, scene, packet, &(query).intersect)
-#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) call(valid, scene, packet, &(query).occluded)
+#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) \
+  call(valid, scene, packet, &(query).occluded)
 #else
 struct Query {
   RTCIntersectContext context;
@@ -49,7 +50,8 @@ struct Query {
 #define ETENDUE_QUERY_OCCLUDED(call, scene, query, packet) call(scene, &(query).context, packet)
 #define ETENDUE_QUERY_INTERSECT_N(call, valid, scene, query, packet) \
   call(valid, scene, &(query).context, packet)
-#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) call(valid, scene, &(query).context, packet)
+#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) \
+  call(valid, scene, &(query).context, packet)
 #endif
 
 /// Rays and hits of `width` lanes as arrays, whatever Embree calls them.
@@ -68,17 +70,17 @@ struct Packet<1> {
   }
 };
 
-#define ETENDUE_PACKET(width)                                                                           \
-  template <>                                                                                           \
-  struct Packet<width> {                                                                                \
-    using Rays = RTCRay##width;                                                                         \
-    using RayHits = RTCRayHit##width;                                                                   \
-    static void intersect(const int* valid, RTCScene scene, Query& query, RayHits* packet) {            \
-      ETENDUE_QUERY_INTERSECT_N(rtcIntersect##width, valid, scene, query, packet);                      \
-    }                                                                                                   \
-    static void occluded(const int* valid, RTCScene scene, Query& query, Rays* packet) {                \
-      ETENDUE_QUERY_OCCLUDED_N(rtcOccluded##width, valid, scene, query, packet);                        \
-    }                                                                                                   \
+#define ETENDUE_PACKET(width)                                                                \
+  template <>                                                                                \
+  struct Packet<width> {                                                                     \
+    using Rays = RTCRay##width;                                                              \
+    using RayHits = RTCRayHit##width;                                                        \
+    static void intersect(const int* valid, RTCScene scene, Query& query, RayHits* packet) { \
+      ETENDUE_QUERY_INTERSECT_N(rtcIntersect##width, valid, scene, query, packet);           \
+    }                                                                                        \
+    static void occluded(const int* valid, RTCScene scene, Query& query, Rays* packet) {     \
+      ETENDUE_QUERY_OCCLUDED_N(rtcOccluded##width, valid, scene, query, packet);             \
+    }                                                                                        \
   }
 ETENDUE_PACKET(4);
 ETENDUE_PACKET(8);
@@ -143,7 +145,8 @@ void closest_hits_wide(RTCScene scene, const RaySpan& rays, const HitSpan& hits,
 }
 
 template <int width>
-void unoccluded_wide(RTCScene scene, const SegmentSpan& segments, std::int32_t* is_visible, Coherence coherence) {
+void unoccluded_wide(RTCScene scene, const SegmentSpan& segments, std::int32_t* is_visible,
+                     Coherence coherence) {
   Query query(coherence);
   alignas(64) typename Packet<width>::Rays packet;
   alignas(64) std::int32_t valid[width];
@@ -191,15 +194,16 @@ double nearest_sphere_hit(const Sphere& sphere, const Vec3<double>& origin, cons
 
 void sphere_bounds(const RTCBoundsFunctionArguments* args) {
   const Sphere& sphere = static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
-  // A little wider than the sphere, so that rounding never cuts it.
-  const float r = sphere.radius * (1 + 1e-6f);
+  // Rounded outwards, so that the box never cuts the sphere.
+  const auto below = [&](float center) { return std::nextafter(center - sphere.radius, -INFINITY); };
+  const auto above = [&](float center) { return std::nextafter(center + sphere.radius, INFINITY); };
   RTCBounds& bounds = *args->bounds_o;
-  bounds.lower_x = sphere.center.x - r;
-  bounds.lower_y = sphere.center.y - r;
-  bounds.lower_z = sphere.center.z - r;
-  bounds.upper_x = sphere.center.x + r;
-  bounds.upper_y = sphere.center.y + r;
-  bounds.upper_z = sphere.center.z + r;
+  bounds.lower_x = below(sphere.center.x);
+  bounds.lower_y = below(sphere.center.y);
+  bounds.lower_z = below(sphere.center.z);
+  bounds.upper_x = above(sphere.center.x);
+  bounds.upper_y = above(sphere.center.y);
+  bounds.upper_z = above(sphere.center.z);
 }
 
 template <class RayN>
@@ -266,8 +270,8 @@ RayCaster::RayCaster(const Geometry& geometry) : embree_(std::make_unique<Embree
     RTCGeometry shape;
     if (geometry.sphere[id] < 0) {
       shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-      rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions.data(), 0,
-                                 sizeof(Vec3f), geometry.positions.size() - 1);
+      rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                 geometry.positions.data(), 0, sizeof(Vec3f), geometry.positions.size() - 1);
       rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices.data(),
                                  std::size_t(geometry.first_triangle[id]) * 3 * sizeof(std::int32_t),
                                  3 * sizeof(std::int32_t), geometry.triangles[id]);
@@ -295,20 +299,28 @@ RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
 void RayCaster::closest_hits(const RaySpan& rays, const HitSpan& hits, int width, Coherence coherence) const {
   switch (width) {
-    case 1: return closest_hits_wide<1>(embree_->scene, rays, hits, coherence);
-    case 4: return closest_hits_wide<4>(embree_->scene, rays, hits, coherence);
-    case 8: return closest_hits_wide<8>(embree_->scene, rays, hits, coherence);
-    default: return closest_hits_wide<16>(embree_->scene, rays, hits, coherence);
+    case 1:
+      return closest_hits_wide<1>(embree_->scene, rays, hits, coherence);
+    case 4:
+      return closest_hits_wide<4>(embree_->scene, rays, hits, coherence);
+    case 8:
+      return closest_hits_wide<8>(embree_->scene, rays, hits, coherence);
+    default:
+      return closest_hits_wide<16>(embree_->scene, rays, hits, coherence);
   }
 }
 
 void RayCaster::unoccluded(const SegmentSpan& segments, std::int32_t* is_visible, int width,
                            Coherence coherence) const {
   switch (width) {
-    case 1: return unoccluded_wide<1>(embree_->scene, segments, is_visible, coherence);
-    case 4: return unoccluded_wide<4>(embree_->scene, segments, is_visible, coherence);
-    case 8: return unoccluded_wide<8>(embree_->scene, segments, is_visible, coherence);
-    default: return unoccluded_wide<16>(embree_->scene, segments, is_visible, coherence);
+    case 1:
+      return unoccluded_wide<1>(embree_->scene, segments, is_visible, coherence);
+    case 4:
+      return unoccluded_wide<4>(embree_->scene, segments, is_visible, coherence);
+    case 8:
+      return unoccluded_wide<8>(embree_->scene, segments, is_visible, coherence);
+    default:
+      return unoccluded_wide<16>(embree_->scene, segments, is_visible, coherence);
   }
 }
 

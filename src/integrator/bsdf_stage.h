@@ -10,9 +10,12 @@
 #include "integrator/surface_point.h"
 #include "integrator/surface_stage.h"
 
+#include <limits>
+
 namespace etendue {
 
-/// For each sample: a direction from the BSDF at its surface, the ray along it, and its throughput f cos / pdf.
+/// For each sample: a direction from the BSDF at its surface, the ray along it, and its throughput f cos /
+/// pdf.
 template <class F>
 void sample_bsdf(const Scene& scene, SampleBlock& block) {
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
@@ -55,14 +58,14 @@ void add_bsdf_hits(const Scene& scene, SampleBlock& block, Combination combinati
         if (needs_both_pdfs(combination)) {
           const SurfacePoint<F> surface(scene, block.camera_ray, block.camera_hit, i);
           const Vec3<F> wi = load_lanes<F>(block.bsdf_ray.direction, i);
-          const Vec3<F> hit = load_lanes<F>(block.bsdf_ray.origin, i) + wi * load_lanes<F>(&block.bsdf_hit.t[i]);
+          const Vec3<F> hit =
+              load_lanes<F>(block.bsdf_ray.origin, i) + wi * load_lanes<F>(&block.bsdf_hit.t[i]);
           const F pdf_light = light_pdf_solid_angle<F>(scene, light, surface.position, hit, ng, wi, lanes);
           weight = mis_weight(combination, select(lanes, load_lanes<F>(&block.pdf_bsdf[i]), F(1)), pdf_light);
         }
         const Color<F> direct = load_lanes<F>(block.throughput, i) * emitted * weight;
         const Color<F> before = load_lanes<F>(block.radiance, i);
-        store_lanes(block.radiance, i,
-                    before + select(lanes, direct, black<F>()));
+        store_lanes(block.radiance, i, before + select(lanes, direct, black<F>()));
       });
   block.clock.finish(Stage::bsdf_rays);
 }

@@ -1,4 +1,5 @@
-// Camera rays: a sample's place on the film, importance-sampled from the pixel filter, and the ray through it.
+// Camera rays: a sample's place on the film, importance-sampled from the pixel filter, and the ray through
+// it.
 #pragma once
 
 #include "integrator/sample_block.h"
@@ -18,8 +19,10 @@ template <class F>
 void camera_rays(const Scene& scene, SampleBlock& block) {
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
     const Vec2<F> u_film = to_unit_floats<F>(sample_bits<F>(scene, block, i, dimension::film));
-    const F x_px = to_float(load_lanes<Int<F>>(&block.pixel_x[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.x);
-    const F y_px = to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
+    const F x_px =
+        to_float(load_lanes<Int<F>>(&block.pixel_x[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.x);
+    const F y_px =
+        to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
     const CameraRay<F> ray = scene.camera.ray(x_px, y_px);
     store_lanes(block.camera_ray.origin, i, ray.origin);
     store_lanes(block.camera_ray.direction, i, ray.direction);

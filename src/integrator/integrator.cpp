@@ -12,8 +12,8 @@ struct Entry {
   IntegratorKind kind;
 };
 constexpr std::array table{
-    Entry{"light", IntegratorKind::light},     Entry{"area", IntegratorKind::light},
-    Entry{"direct", IntegratorKind::direct},   Entry{"average", IntegratorKind::average},
+    Entry{"light", IntegratorKind::light},   Entry{"area", IntegratorKind::light},
+    Entry{"direct", IntegratorKind::direct}, Entry{"average", IntegratorKind::average},
     Entry{"mis", IntegratorKind::mis},
 };
 
@@ -49,6 +49,10 @@ std::string_view integrator_name(IntegratorKind kind) {
   for (const Entry& entry : table)
     if (entry.kind == kind) return entry.name;
   return {};
+}
+
+std::string_view heuristic_name(Combination heuristic) {
+  return heuristic == Combination::power ? "power" : "balance";
 }
 
 IntegratorSettings make_integrator(const Object& description, std::vector<UnreadKey>& unread) {

@@ -1,11 +1,14 @@
 // Which integrator, with its parameters: chosen once a render, by name.
+//
+// To add one: write integrator/NAME.h as a list of stages, add its kind here, its name and its plugin
+// description in integrator.cpp, and its call in run_integrator.h.
 #pragma once
-
-#include <string_view>
-#include <vector>
 
 #include "integrator/mis_weights.h"
 #include "scenefile/parameters.h"
+
+#include <string_view>
+#include <vector>
 
 namespace etendue {
 
@@ -19,6 +22,7 @@ struct IntegratorSettings {
 
 const std::vector<Plugin>& integrator_plugins();
 std::string_view integrator_name(IntegratorKind kind);
+std::string_view heuristic_name(Combination heuristic);  ///< "balance" or "power".
 
 /// From the scene file. Throws InputError with the known names.
 IntegratorSettings make_integrator(const Object& description, std::vector<UnreadKey>& unread);

@@ -1,10 +1,6 @@
 // The light stages: sample the lights, aim the shadow rays, add what nothing hides.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <utility>
-
 #include "base/frame.h"
 #include "bsdf/bsdf.h"
 #include "integrator/camera_stage.h"
@@ -12,6 +8,10 @@
 #include "integrator/mis_weights.h"
 #include "integrator/sample_block.h"
 #include "integrator/surface_point.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
 
 namespace etendue {
 
@@ -31,14 +31,16 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
     const Vec3<F> wo_local = frame.local_from_world(surface.wo), wi_local = frame.local_from_world(sample.wi);
     const Mask<F> is_lit = mask_and(sample.is_facing, surface.reflects_towards(sample.wi));
     Color<F> reflected = black<F>();
-    for_each_material<F>(scene.materials, surface.material, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
-      const F weight = needs_both_pdfs(combination)
-                           ? mis_weight(combination, select(lanes, sample.pdf_solid_angle(), F(1)),
-                                        bsdf.pdf_solid_angle_(wo_local, wi_local))
-                           : mis_weight(combination, F(1), F(1));
-      const Color<F> f = bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (wi_local.z * weight);
-      reflected = select(lanes, f, reflected);
-    });
+    for_each_material<F>(
+        scene.materials, surface.material, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
+          const F weight = needs_both_pdfs(combination)
+                               ? mis_weight(combination, select(lanes, sample.pdf_solid_angle(), F(1)),
+                                            bsdf.pdf_solid_angle_(wo_local, wi_local))
+                               : mis_weight(combination, F(1), F(1));
+          const Color<F> f =
+              bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (wi_local.z * weight);
+          reflected = select(lanes, f, reflected);
+        });
 
     store_lanes(block.unshadowed, i, reflected);
     // Not "greater than 0": a NaN must reach the sum, where it is reported.
@@ -51,11 +53,12 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
   block.clock.finish(Stage::light_samples);
 }
 
-/// Orders the shadow rays that are needed so that a packet goes from one part of the block's pixels to one piece of one
-/// light: a counting sort. Order only: results go back to the sample's place.
+/// Orders the shadow rays that are needed so that a packet goes from one part of the block's pixels to one
+/// piece of one light: a counting sort. Order only: results go back to the sample's place.
 inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
-  // A packet is coherent where both its ends are near each other: a block of many pixels, which come in Morton order, is
-  // split into quarters and each light into few pieces; a block of one pixel, each light into many.
+  // A packet is coherent where both its ends are near each other: a block of many pixels, which come in
+  // Morton order, is split into quarters and each light into few pieces; a block of one pixel, each light
+  // into many.
   constexpr std::int32_t most_bins = 256;
   const std::int32_t quarters = block.is_one_pixel ? 1 : 4, piece_shift = block.is_one_pixel ? 0 : 2;
   const std::int32_t aims = scene.lights.count() * (light_pieces >> piece_shift);
@@ -92,7 +95,8 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
     block.order[std::size_t(next[0][std::size_t(bins[i])]++)] = i;
     block.order[std::size_t(next[1][std::size_t(bins[i + 1])]++)] = i + 1;
   }
-  if (even_count < block.count) block.order[std::size_t(next[0][std::size_t(bins[even_count])]++)] = even_count;
+  if (even_count < block.count)
+    block.order[std::size_t(next[0][std::size_t(bins[even_count])]++)] = even_count;
   block.clock.finish(Stage::aiming);
 }
 

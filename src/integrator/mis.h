@@ -6,7 +6,8 @@
 
 namespace etendue {
 
-/// Each sample: the emission that the camera sees, one light sample and one BSDF sample, weighted by `heuristic`.
+/// Each sample: the emission that the camera sees, one light sample and one BSDF sample, weighted by
+/// `heuristic`.
 template <class F>
 void mis(const Scene& scene, SampleBlock& block, Combination heuristic, bool is_reordering) {
   camera_rays<F>(scene, block);

@@ -1,13 +1,13 @@
 // A block of samples as structure-of-arrays buffers that stay in the cache; integrators' stages pass over it.
 #pragma once
 
-#include <array>
-#include <chrono>
-#include <cstdint>
-
 #include "base/color.h"
 #include "base/mask.h"
 #include "base/vec.h"
+
+#include <array>
+#include <chrono>
+#include <cstdint>
 
 namespace etendue {
 
@@ -45,9 +45,19 @@ void store_lanes(ColorColumn& column, int i, const Color<F>& c) {
 }
 
 /// Where the time goes, for benchmarks: a stage ends where the next begins.
-enum class Stage { camera_rays, closest_hits, emission, light_samples, aiming, shadow_rays, bsdf_samples, bsdf_rays, sums };
-inline constexpr std::array stage_names{"camera_rays",  "closest_hits", "emission",     "light_samples", "aiming",
-                                        "shadow_rays",  "bsdf_samples", "bsdf_rays",    "sums"};
+enum class Stage {
+  camera_rays,
+  closest_hits,
+  emission,
+  light_samples,
+  aiming,
+  shadow_rays,
+  bsdf_samples,
+  bsdf_rays,
+  sums
+};
+inline constexpr std::array stage_names{"camera_rays", "closest_hits", "emission",  "light_samples", "aiming",
+                                        "shadow_rays", "bsdf_samples", "bsdf_rays", "sums"};
 
 class StageClock {
  public:
@@ -95,7 +105,7 @@ struct SampleBlock {
   Vec3Column shadow_origin, shadow_direction;
   ColorColumn unshadowed;
   Column<std::int32_t> shadow_is_needed, shadow_is_free;
-  Column<std::int32_t> aim;  ///< light * light_pieces + piece; after aiming, the bin.
+  Column<std::int32_t> aim;    ///< light * light_pieces + piece; after aiming, the bin.
   Column<std::int32_t> order;  ///< Of tracing: sample numbers, then -1.
   int shadow_count = 0;
 

@@ -9,8 +9,8 @@ namespace etendue {
 /// A shadow segment ends this far along its way to the light, so that the light does not shadow itself.
 inline constexpr float shadow_segment_end = 1 - 1e-4f;
 
-/// Rays start this far off the surface, as a fraction of the largest coordinate or of the distance from the camera,
-/// whichever is larger: some tens of rounding errors of the hit point.
+/// Rays start this far off the surface, as a fraction of the largest coordinate or of the distance from the
+/// camera, whichever is larger: some tens of rounding errors of the hit point.
 inline constexpr float ray_offset = 1e-5f;
 
 /// How far off the surface the rays that leave it start (m), for a point found at `distance` along its ray.
@@ -29,7 +29,8 @@ struct HitNormals {
       : ng(normalize(load_lanes<F>(hits.ng, i))), ns(ng) {
     if (!scene.geometry.has_any_normals) return;
     const Int<F> geometry = select(is_hit, load_lanes<Int<F>>(&hits.geometry[i]), Int<F>(0));
-    const Mask<F> is_smooth = mask_and(is_hit, equal(gather(scene.geometry.has_normals.data(), geometry), Int<F>(1)));
+    const Mask<F> is_smooth =
+        mask_and(is_hit, equal(gather(scene.geometry.has_normals.data(), geometry), Int<F>(1)));
     if (!any(is_smooth)) return;
     const Vec2<F> barycentric{load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])};
     const Vec3<F> smooth = normalize(interpolate_normal<F>(
@@ -44,7 +45,7 @@ struct SurfacePoint {
   Mask<F> is_there;
   Vec3<F> position, ng, ns, wo;
   F clearance;
-  Int<F> material;  ///< 0 where nothing is there.
+  Int<F> material;  ///< Any where nothing is there.
 
   SurfacePoint(const Scene& scene, const RayColumns& rays, const HitColumns& hits, int i) {
     const Int<F> geometry = load_lanes<Int<F>>(&hits.geometry[i]);

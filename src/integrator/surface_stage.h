@@ -4,7 +4,6 @@
 #include "integrator/mis_weights.h"
 #include "integrator/sample_block.h"
 #include "integrator/surface_point.h"
-#include "integrator/surface_point.h"
 #include "light/light.h"
 #include "scene/scene.h"
 
@@ -12,9 +11,9 @@ namespace etendue {
 
 template <class F>
 void cast_rays(const Scene& scene, const RayColumns& rays, HitColumns& hits, int count, Coherence coherence) {
-  scene.rays.closest_hits({rays.origin.x.data(), rays.origin.y.data(), rays.origin.z.data(), rays.direction.x.data(),
-                           rays.direction.y.data(), rays.direction.z.data(), rays.t_near.data(), rays.t_far.data(),
-                           rays.is_active.data(), count},
+  scene.rays.closest_hits({rays.origin.x.data(), rays.origin.y.data(), rays.origin.z.data(),
+                           rays.direction.x.data(), rays.direction.y.data(), rays.direction.z.data(),
+                           rays.t_near.data(), rays.t_far.data(), rays.is_active.data(), count},
                           {hits.t.data(), hits.ng.x.data(), hits.ng.y.data(), hits.ng.z.data(), hits.u.data(),
                            hits.v.data(), hits.geometry.data(), hits.primitive.data()},
                           lane_count_v<F>, coherence);
@@ -27,10 +26,11 @@ void closest_hits(const Scene& scene, SampleBlock& block) {
   block.clock.finish(Stage::closest_hits);
 }
 
-/// Radiance emitted towards where the rays came from, by the lights among what they hit. `f(i, lanes, light, emitted,
-/// ng)` is called for packets with any such lane.
+/// Radiance emitted towards where the rays came from, by the lights among what they hit. `f(i, lanes, light,
+/// emitted, ng)` is called for packets with any such lane.
 template <class F, class Function>
-void for_each_emission(const Scene& scene, const RayColumns& rays, const HitColumns& hits, int count, Function&& f) {
+void for_each_emission(const Scene& scene, const RayColumns& rays, const HitColumns& hits, int count,
+                       Function&& f) {
   for (int i = 0; i < count; i += lane_count_v<F>) {
     const Int<F> geometry = load_lanes<Int<F>>(&hits.geometry[i]);
     const Mask<F> is_hit = less(Int<F>(-1), geometry);

@@ -11,9 +11,9 @@ template <class F>
 struct LightPoint {
   Vec3<F> position;  ///< World, m.
   Vec3<F> ng;        ///< Unit geometric normal; what the Jacobian uses.
-  Vec3<F> ns;        ///< Interpolated normal, any length; the light shines where both normals face the receiver.
-  F pdf_area;        ///< 1/m^2; 0: no sample (a receiver inside of a sphere).
-  Int<F> piece;      ///< 0 .. light_pieces - 1: near points of a light have near pieces; orders shadow rays only.
+  Vec3<F> ns;    ///< Interpolated normal, any length; the light shines where both normals face the receiver.
+  F pdf_area;    ///< 1/m^2; 0: no sample (a receiver inside of a sphere).
+  Int<F> piece;  ///< 0 .. light_pieces - 1: near points of a light have near pieces; orders shadow rays only.
 };
 
 inline constexpr int light_pieces = 16;

@@ -11,11 +11,12 @@ namespace {
 
 /// Whether the box around a triangle has a volume.
 bool has_thick_box(const Vec3f& edge_1, const Vec3f& edge_2) {
-  return (edge_1.x != 0 || edge_2.x != 0) && (edge_1.y != 0 || edge_2.y != 0) && (edge_1.z != 0 || edge_2.z != 0);
+  return (edge_1.x != 0 || edge_2.x != 0) && (edge_1.y != 0 || edge_2.y != 0) &&
+         (edge_1.z != 0 || edge_2.z != 0);
 }
 
-/// The cell of a 4x4 grid over the two longest sides of the mesh's box that holds a triangle's centre, in Morton order:
-/// where a light has many triangles, these are its pieces.
+/// The cell of a 4x4 grid over the two longest sides of the mesh's box that holds a triangle's centre, in
+/// Morton order: where a light has many triangles, these are its pieces.
 class PieceGrid {
  public:
   explicit PieceGrid(const std::vector<Vec3f>& centers) {
@@ -73,7 +74,8 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   const PieceGrid grid(centers);
   for (std::size_t t = 0; t < count; ++t) {
     // Of a light with few triangles, each has several pieces.
-    const auto begin = std::int32_t(t * light_pieces / count), end = std::int32_t((t + 1) * light_pieces / count);
+    const auto begin = std::int32_t(t * light_pieces / count),
+               end = std::int32_t((t + 1) * light_pieces / count);
     pieces_.push_back(count >= light_pieces ? grid.piece(centers[t]) | 1 << 8 : begin | (end - begin) << 8);
   }
   const AliasTable table = make_alias_table(areas);

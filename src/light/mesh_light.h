@@ -1,14 +1,14 @@
 // Area lights on triangle meshes of any size: a triangle by area, then a point uniform within it.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "base/lookup_table.h"
 #include "base/simd_math.h"
 #include "base/warp.h"
 #include "geometry/geometry.h"
 #include "light/light_point.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace etendue {
 
@@ -19,11 +19,13 @@ class MeshLights {
 
   std::int32_t count() const { return pdf_area_.size(); }
 
-  /// Lights on which a packet of shadow rays meets many triangles although it aims at one piece: rays end just short of
-  /// their light, but within the boxes around its triangles, unless these lie flat in a plane of two axes.
+  /// Lights on which a packet of shadow rays meets many triangles although it aims at one piece: rays end
+  /// just short of their light, but within the boxes around its triangles, unless these lie flat in a plane
+  /// of two axes.
   std::int32_t finely_built_count() const { return finely_built_count_; }
 
-  /// The triangle comes from u.y through an alias table (O(1)); what is left of u.y is stretched back over [0, 1).
+  /// The triangle comes from u.y through an alias table (O(1)); what is left of u.y is stretched back over
+  /// [0, 1).
   template <class F>
   LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& row, const Vec3<F>& /*reference*/,
                                 const Vec2<UInt<F>>& u, const Mask<F>& m) const {
@@ -35,13 +37,15 @@ class MeshLights {
     const auto is_own = less(fraction, threshold);
     const I triangle = select(is_own, bucket, gather(alias_.data(), first + bucket));
     const F left = to_unit_float(fraction), split = to_unit_float(threshold);
-    const F stretched = select(is_own, left, left - split) / max(select(is_own, split, F(1) - split), F(0x1p-24f));
+    const F stretched =
+        select(is_own, left, left - split) / max(select(is_own, split, F(1) - split), F(0x1p-24f));
     const Vec2<F> u_triangle{to_unit_float(u.x), min(max(stretched, F(0)), F(0x1.fffffep-1f))};
 
     const float* corner = triangles_.data();
     const I at = (first + triangle) * I(9);
     const auto vec = [&](int offset) {
-      return Vec3<F>{gather(corner + offset, at), gather(corner + offset + 1, at), gather(corner + offset + 2, at)};
+      return Vec3<F>{gather(corner + offset, at), gather(corner + offset + 1, at),
+                     gather(corner + offset + 2, at)};
     };
     const Vec3<F> origin = vec(0), edge_1 = vec(3), edge_2 = vec(6);
     const Vec2<F> barycentric = square_to_triangle(u_triangle);
@@ -64,7 +68,8 @@ class MeshLights {
 
   /// 1 / total area
   template <class F>
-  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/, const Vec3<F>& /*ng*/) const {
+  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/,
+             const Vec3<F>& /*ng*/) const {
     return pdf_area_.at(row);
   }
 
@@ -73,8 +78,8 @@ class MeshLights {
   LookupTable<std::int32_t> geometry_id_, has_normals_, first_triangle_, triangle_count_;
   LookupTable<float> pdf_area_;
   std::int32_t finely_built_count_ = 0;
-  // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first in the low
-  // byte, their number above.
+  // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first
+  // in the low byte, their number above.
   std::vector<std::int32_t> pieces_;
   std::vector<std::uint32_t> alias_threshold_;
   std::vector<std::int32_t> alias_;

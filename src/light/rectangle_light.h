@@ -1,13 +1,13 @@
 // Rectangular (and parallelogram) area lights: a point uniform over the whole.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "base/lookup_table.h"
 #include "base/simd_math.h"
 #include "geometry/geometry.h"
 #include "light/light_point.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace etendue {
 
@@ -37,7 +37,8 @@ class RectangleLights {
   }
 
   template <class F>
-  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/, const Vec3<F>& /*ng*/) const {
+  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/,
+             const Vec3<F>& /*ng*/) const {
     return pdf_area_.at(row);
   }
 

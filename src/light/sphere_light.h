@@ -1,14 +1,14 @@
 // Spherical area lights: a direction uniform in the cone that the sphere fills.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "base/frame.h"
 #include "base/simd_math.h"
 #include "base/warp.h"
 #include "geometry/geometry.h"
 #include "light/light_point.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace etendue {
 
@@ -25,16 +25,16 @@ class SphereLights {
                                 const Vec2<UInt<F>>& u, const Mask<F>& /*m*/) const {
     const Cone<F> cone(*this, row, reference);
     const Vec2<F> u_cone{to_unit_float(u.x), to_unit_float(u.y)};
-    // From the angle at the receiver to the angle at the centre, from which the point follows without cancellation
-    // (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th ed., section 6.2.4).
+    // From the angle at the receiver to the angle at the centre, from which the point follows without
+    // cancellation (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th ed., section 6.2.4).
     const F one_minus_cos = u_cone.x * cone.one_minus_cos_max;
     const F cos_theta = F(1) - one_minus_cos;
     const F sin_theta_sq = max(one_minus_cos * (F(2) - one_minus_cos), F(0));
     const F sin_ratio_sq = min(sin_theta_sq / cone.sin_max_sq, F(1));
     const F sin_max = sqrt(cone.sin_max_sq);
     const F cos_center = sin_ratio_sq * sin_max + cos_theta * sqrt(F(1) - sin_ratio_sq);
-    // sin(asin(ratio) - theta) as a quotient: from the cosine, points below a receiver that all but touches the sphere
-    // would lie on a few rings.
+    // sin(asin(ratio) - theta) as a quotient: from the cosine, points below a receiver that all but touches
+    // the sphere would lie on a few rings.
     const F sin_center = sqrt(sin_ratio_sq) * (F(1) - cone.sin_max_sq) /
                          (cos_theta + sqrt(max(cone.sin_max_sq - sin_theta_sq, F(0x1p-60f))));
     F sine, cosine;
@@ -56,7 +56,8 @@ class SphereLights {
     const Vec3<F> to_receiver = reference - position;
     const F distance_sq = length_sq(to_receiver);
     const F cos_theta_light = dot(ng, to_receiver) / sqrt(distance_sq);
-    const F pdf = area_from_solid_angle(uniform_cone_pdf_solid_angle(cone.one_minus_cos_max), distance_sq, cos_theta_light);
+    const F pdf = area_from_solid_angle(uniform_cone_pdf_solid_angle(cone.one_minus_cos_max), distance_sq,
+                                        cos_theta_light);
     return select(mask_and(cone.is_outside, cos_theta_light > F(0)), pdf, F(0));
   }
 

@@ -1,15 +1,14 @@
 #include "render/isa.h"
 
-#include <dlfcn.h>
-#include <fmt/format.h>
-
-#include <array>
-#include <filesystem>
-#include <mutex>
-#include <string>
-
 #include "base/error.h"
 #include "render/kernel.h"
+
+#include <array>
+#include <dlfcn.h>
+#include <filesystem>
+#include <fmt/format.h>
+#include <mutex>
+#include <string>
 
 namespace etendue {
 
@@ -21,10 +20,14 @@ constexpr std::array<std::string_view, 4> names{"scalar", "v2", "v3", "v4"};
 bool has_isa(Isa isa) {
   __builtin_cpu_init();
   switch (isa) {
-    case Isa::scalar: return true;
-    case Isa::v2: return __builtin_cpu_supports("x86-64-v2");
-    case Isa::v3: return __builtin_cpu_supports("x86-64-v3");
-    case Isa::v4: return __builtin_cpu_supports("x86-64-v4");
+    case Isa::scalar:
+      return true;
+    case Isa::v2:
+      return __builtin_cpu_supports("x86-64-v2");
+    case Isa::v3:
+      return __builtin_cpu_supports("x86-64-v3");
+    case Isa::v4:
+      return __builtin_cpu_supports("x86-64-v4");
   }
   return false;
 }
@@ -41,7 +44,8 @@ const Kernel* load_kernel(Isa isa) {
   const std::filesystem::path file = library_folder() / fmt::format("libetendue_kernel_{}.so", isa_name(isa));
   void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!module)
-    throw InputError(fmt::format("cannot load the kernel for '{}': {}\n  build the target etendue_kernel", isa_name(isa), dlerror()));
+    throw InputError(fmt::format("cannot load the kernel for '{}': {}\n  build the target etendue_kernel",
+                                 isa_name(isa), dlerror()));
   void* entry = dlsym(module, "etendue_kernel");
   if (!entry) throw InputError(fmt::format("{} is not a kernel: {}", file.string(), dlerror()));
   return reinterpret_cast<const Kernel* (*)()>(entry)();
@@ -61,7 +65,8 @@ std::vector<Isa> available_isas() {
 Isa isa_from_name(std::string_view name) {
   for (const Isa isa : all_isas) {
     if (isa_name(isa) != name) continue;
-    if (!has_isa(isa)) throw InputError(fmt::format("this machine has no '{}' instructions; see etendue info", name));
+    if (!has_isa(isa))
+      throw InputError(fmt::format("this machine has no '{}' instructions; see etendue info", name));
     return isa;
   }
   throw InputError({}, fmt::format("unknown instruction set '{}'", name),

@@ -1,13 +1,8 @@
-// The one source that holds the wide code; built once for each instruction set, see src/CMakeLists.txt.
+// The one source that holds the wide code; built once for each instruction set, see
+// cmake/EtendueModules.cmake.
 #include "render/kernel.h"
 
-#include <algorithm>
-#include <limits>
-
-#include "integrator/average.h"
-#include "integrator/direct.h"
-#include "integrator/light.h"
-#include "integrator/mis.h"
+#include "integrator/run_integrator.h"
 #include "render/pixel_blocks.h"
 
 namespace etendue {
@@ -16,32 +11,24 @@ namespace {
 
 using F = NativeLanes;
 
-void run_integrator(const TileJob& job, SampleBlock& block) {
-  const IntegratorSettings& integrator = job.settings->integrator;
-  switch (integrator.kind) {
-    case IntegratorKind::light: return light<F>(*job.scene, block, job.settings->is_reordering);
-    case IntegratorKind::direct: return direct<F>(*job.scene, block);
-    case IntegratorKind::average: return average<F>(*job.scene, block, job.settings->is_reordering);
-    case IntegratorKind::mis:
-      return mis<F>(*job.scene, block, integrator.heuristic, job.settings->is_reordering);
-  }
-}
-
-/// Counts and notes samples that are not finite and >= 0, and makes them 0 so that they do not poison their pixel.
-void set_invalid_aside(TileJob& job, SampleBlock& block, int samples_per_replicate, const PixelBlocks& pixels) {
-  constexpr std::size_t most_noted = 16;
+/// Counts and notes samples that are not finite and >= 0, and makes them 0 so that they do not poison their
+/// pixel.
+void set_invalid_aside(TileJob& job, SampleBlock& block, int samples_per_replicate,
+                       const PixelBlocks& pixels) {
   ColorColumn& radiance = block.radiance;
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
     const Color<F> c = load_lanes<F>(radiance, i);
-    if (all(mask_and(is_finite_nonnegative(c.r), is_finite_nonnegative(c.g), is_finite_nonnegative(c.b)))) continue;
+    if (all(mask_and(is_finite_nonnegative(c.r), is_finite_nonnegative(c.g), is_finite_nonnegative(c.b))))
+      continue;
     for (int s = i; s < i + lane_count_v<F>; ++s) {
       const Colorf sample{radiance.r[s], radiance.g[s], radiance.b[s]};
-      if (is_finite_nonnegative(sample.r) && is_finite_nonnegative(sample.g) && is_finite_nonnegative(sample.b))
+      if (is_finite_nonnegative(sample.r) && is_finite_nonnegative(sample.g) &&
+          is_finite_nonnegative(sample.b))
         continue;
       radiance.r[s] = radiance.g[s] = radiance.b[s] = 0;
       if (s >= block.count) continue;
       ++job.invalid_samples;
-      if (job.invalid->size() < most_noted)
+      if (job.invalid->size() < most_invalid_noted)
         job.invalid->push_back({block.pixel_x[s], block.pixel_y[s],
                                 pixels.sample_of(s) / samples_per_replicate, block.index[s], sample});
     }
@@ -53,9 +40,14 @@ void render_tile(TileJob& job) {
   PixelBlocks pixels(job);
   block.clock.start();
   while (pixels.next(block)) {
-    run_integrator(job, block);
+    if (job.stop && job.stop->load(std::memory_order_relaxed)) {
+      job.is_stopped = true;
+      return;
+    }
+    run_integrator<F>(job.settings->integrator, *job.scene, block, job.settings->is_reordering);
     set_invalid_aside(job, block, pixels.samples_per_replicate(), pixels);
     pixels.add_to_film(block, *job.film);
+    job.samples += block.count;
     block.clock.finish(Stage::sums);
     if (job.on_block) {
       (*job.on_block)(block);

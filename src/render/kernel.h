@@ -1,13 +1,13 @@
 // The door between the program and a kernel module: one table per instruction set.
 #pragma once
 
-#include <functional>
-#include <vector>
-
 #include "film/film.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_block.h"
 #include "render/render.h"
+
+#include <functional>
+#include <vector>
 
 namespace etendue {
 
@@ -19,7 +19,9 @@ struct TileJob {
   SampleBlock* block;  ///< Scratch of this thread.
   Film* film;
   std::vector<InvalidSample>* invalid;
-  std::int64_t invalid_samples = 0;
+  const std::atomic<bool>* stop = nullptr;  ///< Asked between blocks.
+  std::int64_t samples = 0, invalid_samples = 0;
+  bool is_stopped = false;  ///< Some pixels of the tile were not rendered.
   /// Called after each block, where set: benchmarks look at the rays.
   const std::function<void(const SampleBlock&)>* on_block = nullptr;
 };

@@ -1,14 +1,14 @@
 // A tile as a sequence of blocks: many samples of one pixel, or few of each pixel of a small square.
 #pragma once
 
-#include <algorithm>
-#include <vector>
-
 #include "film/film.h"
 #include "integrator/sample_block.h"
 #include "render/kernel.h"
 #include "render/replicate_sum.h"
 #include "sampler/sampler.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace etendue {
 
@@ -18,7 +18,7 @@ class PixelBlocks {
       : job_(job),
         samples_(job.settings->samples_per_pixel),
         per_replicate_(samples_ / job.settings->replicates) {
-    while (2 * height_ * width_ * samples_ <= block_capacity) (width_ > height_ ? height_ : width_) *= 2;
+    while (samples_ <= block_capacity / (2 * width_ * height_)) (width_ > height_ ? height_ : width_) *= 2;
     means_.resize(std::size_t(job.settings->replicates));
     x_ = job.x_begin;
     y_ = job.y_begin;
@@ -40,8 +40,7 @@ class PixelBlocks {
     samples_in_block_ = std::min(samples_ - first_sample_, block_capacity);
     block.count = 0;
     for (const Pixel& pixel : pixels_) fill_pixel(block, pixel);
-    constexpr int widest = 16;
-    block.padded_count = (block.count + widest - 1) / widest * widest;
+    block.padded_count = (block.count + widest_lanes - 1) / widest_lanes * widest_lanes;
     for (int i = block.count; i < block.padded_count; ++i) {
       const int last = block.count - 1;
       block.pixel_x[i] = block.pixel_x[last];
@@ -64,10 +63,12 @@ class PixelBlocks {
         i += count;
         if (index + count == per_replicate_) {
           const double scale = 1.0 / per_replicate_;
-          means_[std::size_t(replicate)] = {sum_r_.take() * scale, sum_g_.take() * scale, sum_b_.take() * scale};
+          means_[std::size_t(replicate)] = {sum_r_.take() * scale, sum_g_.take() * scale,
+                                            sum_b_.take() * scale};
         }
       });
-      if (first_sample_ + samples_in_block_ == samples_) film.at(pixel.x, pixel.y) = combine_replicates(means_, 0);
+      if (first_sample_ + samples_in_block_ == samples_)
+        film.at(pixel.x, pixel.y) = combine_replicates(means_, 0);
     }
     first_sample_ += samples_in_block_;
     if (first_sample_ < samples_) return;
@@ -84,6 +85,7 @@ class PixelBlocks {
     int x, y;
   };
 
+  static_assert(block_capacity <= 1 << 10 && block_capacity % widest_lanes == 0);
   /// Bits 0, 2, 4 ... of a Morton number below 2^10.
   static int even_bits(int morton) {
     int result = 0;

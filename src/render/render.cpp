@@ -1,23 +1,33 @@
 #include "render/render.h"
 
-#include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include "render/kernel.h"
 
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <memory>
 #include <mutex>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <tuple>
-
-#include "render/kernel.h"
 
 namespace etendue {
 
 namespace {
 
-constexpr int tile_side_px = 32;
+/// Tiles small enough for every thread to have several, and for an interrupt to be obeyed soon.
+int tile_side_px(const Camera& camera, int samples_per_pixel, int threads) {
+  constexpr int largest = 32, smallest = 4, tiles_a_thread = 8;
+  constexpr double most_samples = 4e6;
+  int side = largest;
+  const auto is_coarse = [&] {
+    return double(camera.width_px) * camera.height_px < double(side) * side * threads * tiles_a_thread ||
+           double(side) * side * samples_per_pixel > most_samples;
+  };
+  while (side > smallest && is_coarse()) side /= 2;
+  return side;
+}
 
 /// One thread's scratch and counts.
 struct Worker {
@@ -47,8 +57,10 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
   check(settings);
   const Kernel& kernel = kernel_for(settings.isa);
   RenderResult result{Film(scene.camera.width_px, scene.camera.height_px), {}, {}, 0, false};
-  const int columns = (scene.camera.width_px + tile_side_px - 1) / tile_side_px;
-  const int rows = (scene.camera.height_px + tile_side_px - 1) / tile_side_px;
+  const int threads = settings.threads > 0 ? settings.threads : available_threads();
+  const int side = tile_side_px(scene.camera, settings.samples_per_pixel, threads);
+  const int columns = (scene.camera.width_px + side - 1) / side,
+            rows = (scene.camera.height_px + side - 1) / side;
   const auto start = std::chrono::steady_clock::now();
 
   tbb::enumerable_thread_specific<Worker> workers;
@@ -57,28 +69,28 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
   const auto render_tile = [&](int tile) {
     if (stop && stop->load(std::memory_order_relaxed)) return;
     Worker& worker = workers.local();
-    const int x = tile % columns * tile_side_px, y = tile / columns * tile_side_px;
+    const int x = tile % columns * side, y = tile / columns * side;
     TileJob job{.scene = &scene,
                 .settings = &settings,
                 .x_begin = x,
                 .y_begin = y,
-                .x_end = std::min(x + tile_side_px, scene.camera.width_px),
-                .y_end = std::min(y + tile_side_px, scene.camera.height_px),
+                .x_end = std::min(x + side, scene.camera.width_px),
+                .y_end = std::min(y + side, scene.camera.height_px),
                 .block = worker.block.get(),
                 .film = &result.film,
-                .invalid = &worker.invalid};
+                .invalid = &worker.invalid,
+                .stop = stop};
     kernel.render_tile(job);
-    worker.samples += std::int64_t(job.x_end - job.x_begin) * (job.y_end - job.y_begin) * settings.samples_per_pixel;
+    worker.samples += job.samples;
     worker.invalid_samples += job.invalid_samples;
-    const int done = ++tiles_done;
+    if (job.is_stopped) return;
+    ++tiles_done;
     if (!progress) return;
-    if (const std::unique_lock lock(progress_mutex, std::try_to_lock); lock)
-      progress(double(done) / (columns * rows));
+    const std::lock_guard lock(progress_mutex);
+    progress(double(tiles_done) / (columns * rows));
   };
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
-  arena.execute([&] {
-    tbb::parallel_for(0, columns * rows, render_tile, tbb::simple_partitioner{});
-  });
+  tbb::task_arena arena(threads);
+  arena.execute([&] { tbb::parallel_for(0, columns * rows, render_tile, tbb::simple_partitioner{}); });
 
   for (const Worker& worker : workers) {
     result.counts.samples += worker.samples;
@@ -89,6 +101,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
     result.invalid.insert(result.invalid.end(), worker.invalid.begin(), worker.invalid.end());
   }
   std::sort(result.invalid.begin(), result.invalid.end(), is_before);
+  result.invalid.resize(std::min(result.invalid.size(), most_invalid_noted));
   result.is_interrupted = tiles_done < columns * rows;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -1,17 +1,17 @@
 // Scene -> Film: the tile loop, its settings, its progress, what it counted.
 #pragma once
 
+#include "film/film.h"
+#include "integrator/integrator.h"
+#include "render/isa.h"
+#include "scene/scene.h"
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "film/film.h"
-#include "integrator/integrator.h"
-#include "render/isa.h"
-#include "scene/scene.h"
 
 namespace etendue {
 
@@ -21,7 +21,7 @@ struct RenderSettings {
   int samples_per_pixel = 16;  ///< In all, over all replicates.
   int replicates = 4;          ///< Must divide samples_per_pixel.
   std::uint64_t seed = 0;
-  int threads = 0;             ///< 0: all that the process may use.
+  int threads = 0;  ///< 0: all that the process may use.
   Isa isa = Isa::scalar;
   bool is_reordering = true;  ///< Aim shadow packets; off only to show that it changes nothing.
 };
@@ -33,6 +33,8 @@ struct InvalidSample {
   Colorf radiance;
 };
 
+inline constexpr std::size_t most_invalid_noted = 16;
+
 struct RenderCounts {
   std::int64_t samples = 0, camera_rays = 0, shadow_rays = 0, bsdf_rays = 0, invalid_samples = 0;
 };
@@ -40,12 +42,12 @@ struct RenderCounts {
 struct RenderResult {
   Film film;
   RenderCounts counts;
-  std::vector<InvalidSample> invalid;  ///< The first few, in pixel order.
+  std::vector<InvalidSample> invalid;  ///< Some of them, at most `most_invalid_noted`, in pixel order.
   double seconds = 0;
   bool is_interrupted = false;  ///< `stop` was set: pixels with count 0 were not rendered.
 };
 
-/// Called from one thread at a time with the fraction done in [0, 1], a few times a second.
+/// Called from one thread at a time with the fraction done in [0, 1], after each tile.
 using ProgressCallback = std::function<void(double fraction)>;
 
 /// Threads that a render takes where none are asked for: those that this process may run on.

@@ -1,9 +1,6 @@
 #include "render/replay.h"
 
-#include "integrator/average.h"
-#include "integrator/direct.h"
-#include "integrator/light.h"
-#include "integrator/mis.h"
+#include "integrator/run_integrator.h"
 
 #include <fmt/format.h>
 #include <limits>
@@ -14,28 +11,6 @@ namespace etendue {
 namespace {
 
 using F = float;
-
-struct Techniques {
-  bool has_light_sample, has_bsdf_sample;
-};
-
-Techniques run_integrator(const IntegratorSettings& integrator, const Scene& scene, SampleBlock& block) {
-  switch (integrator.kind) {
-    case IntegratorKind::light:
-      light<F>(scene, block, false);
-      return {true, false};
-    case IntegratorKind::direct:
-      direct<F>(scene, block);
-      return {false, true};
-    case IntegratorKind::average:
-      average<F>(scene, block, false);
-      return {true, true};
-    case IntegratorKind::mis:
-      mis<F>(scene, block, integrator.heuristic, false);
-      return {true, true};
-  }
-  throw std::logic_error("an integrator that replay does not know");
-}
 
 void check(const Scene& scene, const RenderSettings& settings, const SampleId& sample) {
   const auto in_range = [](const char* what, std::int64_t value, std::int64_t count) {
@@ -93,7 +68,8 @@ SampleTrace::LightSample light_sample_of(const Scene& scene, const SampleBlock& 
           sample.position,
           sample.radiance_over_pdf,
           sample.pdf_solid_angle(),
-                    load_lanes<F>(block.unshadowed, 0), block.shadow_is_needed[0] != 0,
+          load_lanes<F>(block.unshadowed, 0),
+          block.shadow_is_needed[0] != 0,
           block.shadow_is_free[0] != 0};
 }
 
@@ -115,9 +91,10 @@ SampleTrace replay(const Scene& scene, const RenderSettings& settings, const Sam
   SampleTrace trace{};
   trace_camera_ray(scene, *block_of(settings, sample), trace);
   const std::unique_ptr<SampleBlock> block = block_of(settings, sample);
-  const Techniques techniques = run_integrator(settings.integrator, scene, *block);
-  if (trace.hit && techniques.has_light_sample) trace.light_sample = light_sample_of(scene, *block);
-  if (trace.hit && techniques.has_bsdf_sample) trace.bsdf_sample = bsdf_sample_of(scene, *block);
+  run_integrator<F>(settings.integrator, scene, *block, false);
+  const IntegratorKind kind = settings.integrator.kind;
+  if (trace.hit && kind != IntegratorKind::direct) trace.light_sample = light_sample_of(scene, *block);
+  if (trace.hit && kind != IntegratorKind::light) trace.bsdf_sample = bsdf_sample_of(scene, *block);
   trace.radiance = load_lanes<F>(block->radiance, 0);
   return trace;
 }

@@ -3,10 +3,15 @@
 namespace etendue {
 
 const std::vector<Plugin>& sampler_plugins() {
-  static const Parameter sample_count{"sampleCount", Parameter::Type::integer, "16", "", "Samples a pixel, in all"};
+  static const Parameter sample_count{"sampleCount", Parameter::Type::integer, "16", "",
+                                      "Samples a pixel, in all"};
   static const std::vector<Plugin> plugins{
       {"sampler", "independent", "Uncorrelated random numbers.", {sample_count}, {}},
-      {"sampler", "sobol", "Owen-scrambled Sobol points; each replicate has its own scrambling.", {sample_count}, {}}};
+      {"sampler",
+       "sobol",
+       "Owen-scrambled Sobol points; each replicate has its own scrambling.",
+       {sample_count},
+       {}}};
   return plugins;
 }
 

@@ -1,16 +1,16 @@
 // Random numbers as a pure function of (seed, pixel, replicate, index, dimension).
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string_view>
-#include <vector>
-
 #include "base/hash.h"
 #include "base/simd_math.h"
 #include "base/vec.h"
 #include "sampler/sobol.h"
 #include "scenefile/parameters.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 namespace etendue {
 
@@ -22,8 +22,8 @@ const std::vector<Plugin>& sampler_plugins();
 SamplerKind sampler_from_name(std::string_view name);
 std::string_view sampler_name(SamplerKind kind);
 
-/// Pairs of dimensions, by consumer. A consumer has the same pair in every integrator, so that integrators can be
-/// compared sample by sample.
+/// Pairs of dimensions, by consumer. A consumer has the same pair in every integrator, so that integrators
+/// can be compared sample by sample.
 namespace dimension {
 inline constexpr std::uint32_t film = 0, light = 1, bsdf = 2;
 }

@@ -1,4 +1,5 @@
-// Owen-scrambled Sobol points in two dimensions, by hashing: Burley 2020, "Practical hash-based Owen scrambling".
+// Owen-scrambled Sobol points in two dimensions, by hashing: Burley 2020, "Practical hash-based Owen
+// scrambling".
 #pragma once
 
 #include "base/bits.h"
@@ -6,8 +7,9 @@
 
 namespace etendue {
 
-/// Owen scrambling of a number whose bits are reversed (most significant digit in bit 0): every bit is flipped by a
-/// hash of the bits below it. Constants of Vegdahl 2021, "Building a better LK hash", the short variant.
+/// Owen scrambling of a number whose bits are reversed (most significant digit in bit 0): every bit is
+/// flipped by a hash of the bits below it. Constants of Vegdahl 2021, "Building a better LK hash", the short
+/// variant.
 template <class U>
 U scramble_reversed(U x, const U& seed) {
   x = x ^ (x * U(0x3d20adeau));
@@ -18,8 +20,8 @@ U scramble_reversed(U x, const U& seed) {
   return x;
 }
 
-/// The second Sobol dimension of `index`, bits reversed: its generator matrix is Pascal's triangle modulo 2, which
-/// factors into five steps.
+/// The second Sobol dimension of `index`, bits reversed: its generator matrix is Pascal's triangle modulo 2,
+/// which factors into five steps.
 template <class U>
 U sobol_second_reversed(U index) {
   index = index ^ (index >> 16);

@@ -1,12 +1,11 @@
 #include "scene/load_scene.h"
 
-#include <fmt/format.h>
+#include "scene/load_shape.h"
 
 #include <chrono>
+#include <fmt/format.h>
 #include <optional>
 #include <utility>
-
-#include "scene/load_shape.h"
 
 namespace etendue {
 
@@ -29,7 +28,8 @@ class Loader {
     Parameters(root, scene_plugin(), unread_);
     for (const Object& child : root.children) add(child);
     if (!camera_)
-      throw InputError(root.location, "the scene has no camera", "add <camera type=\"perspective\"> with a toWorld transform");
+      throw InputError(root.location, "the scene has no camera",
+                       "add <camera type=\"perspective\"> with a toWorld transform");
     if (geometry_.count() == 0)
       throw InputError(root.location, "the scene has no shapes", "add <mesh type=\"obj\"> with a filename");
     if (lights_.count() == 0)
@@ -39,8 +39,8 @@ class Loader {
     const Clock::time_point start = Clock::now();
     RayCaster rays(geometry_);
     const double seconds_build = seconds_since(start);
-    return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_), std::move(rays),
-                  std::move(materials_), std::move(lights_), sampler_},
+    return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_),
+                  std::move(rays), std::move(materials_), std::move(lights_), sampler_},
             integrator_ ? *integrator_ : Object{},
             samples_per_pixel_,
             warnings(),
@@ -50,7 +50,8 @@ class Loader {
 
  private:
   static const Plugin& scene_plugin() {
-    static const Plugin plugin{"scene", "", "", {}, {"integrator", "sampler", "camera", "mesh", "shape", "rfilter"}};
+    static const Plugin plugin{
+        "scene", "", "", {}, {"integrator", "sampler", "camera", "mesh", "shape", "rfilter"}};
     return plugin;
   }
 
@@ -61,10 +62,8 @@ class Loader {
       for (const Object& part : child.children) {
         if (part.family == "rfilter")
           add_filter(part);
-        else if (part.family == "sampler")
-          add_sampler(part);
         else
-          throw misplaced(part, child, {"rfilter", "sampler"});
+          add_sampler(part);
       }
     } else if (child.family == "rfilter") {
       add_filter(child);
@@ -73,12 +72,10 @@ class Loader {
     } else if (child.family == "integrator") {
       once(integrator_.has_value(), child);
       integrator_ = child;
-    } else if (is_shape(child)) {
+    } else {
       const Clock::time_point start = Clock::now();
       add_shape(child);
       seconds_read_ += seconds_since(start);
-    } else {
-      throw misplaced(child, description_.root, {"camera", "integrator", "mesh", "rfilter", "sampler", "shape"});
     }
   }
 
@@ -112,12 +109,9 @@ class Loader {
       } else if (is_light(part)) {
         once(light, part);
         light = &part;
-      } else {
-        throw misplaced(part, object, {"bsdf", "brdf", "emitter", "luminaire"});
       }
     }
-    SurfaceIds ids;
-    ids.material = std::int32_t(materials_.size());
+    SurfaceIds ids{.material = std::int32_t(materials_.size())};
     materials_.push_back(bsdf ? make_bsdf(*bsdf, unread_) : Bsdf{Diffuse{}});
     std::optional<Colorf> radiance;
     if (light) {
@@ -128,12 +122,9 @@ class Loader {
   }
 
   static void once(bool is_there, const Object& object) {
-    if (is_there) throw InputError(object.location, fmt::format("a second <{}>; there can be only one here", object.family));
-  }
-
-  static InputError misplaced(const Object& part, const Object& parent, std::vector<std::string> expected) {
-    return {part.location, fmt::format("<{}> has no place inside <{}>", part.family, parent.family),
-            known_names(part.family, std::move(expected))};
+    if (is_there)
+      throw InputError(object.location,
+                       fmt::format("a second <{}>; there can be only one here", object.family));
   }
 
   std::vector<std::string> warnings() const {

@@ -1,11 +1,11 @@
 // SceneDesc -> Scene, and what the file asks for beside the scene itself.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "scene/scene.h"
 #include "scenefile/scene_desc.h"
+
+#include <string>
+#include <vector>
 
 namespace etendue {
 
@@ -15,8 +15,8 @@ struct LoadedScene {
   Object integrator;  ///< Unread until the render chooses; type empty where the file has none.
   int samples_per_pixel = 16;
   std::vector<std::string> warnings;  ///< Keys that nobody read, triangles without area ...
-  double seconds_read = 0;   ///< Reading and transforming shapes.
-  double seconds_build = 0;  ///< Ray casting's tree and the lights' tables.
+  double seconds_read = 0;            ///< Reading and transforming shapes.
+  double seconds_build = 0;           ///< Ray casting's tree and the lights' tables.
 };
 
 /// Reads the shapes, makes materials and lights, builds the ray caster. Throws InputError for

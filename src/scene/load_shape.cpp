@@ -1,12 +1,11 @@
 #include "scene/load_shape.h"
 
-#include <fmt/format.h>
+#include "geometry/obj_reader.h"
+#include "geometry/shapes.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "geometry/obj_reader.h"
-#include "geometry/shapes.h"
+#include <fmt/format.h>
 
 namespace etendue {
 
@@ -14,7 +13,7 @@ namespace {
 
 using Type = Parameter::Type;
 
-const std::vector<std::string> surface_children{"bsdf", "luminaire", "emitter"};
+const std::vector<std::string> surface_children{"bsdf", "brdf", "emitter", "luminaire"};
 const Parameter to_world{"toWorld", Type::transform, "", "", "World from object; identity unless given"};
 
 const Plugin obj_plugin{
@@ -23,13 +22,12 @@ const Plugin obj_plugin{
     "A triangle mesh from a Wavefront OBJ file; written as <mesh type=\"obj\"> or <shape type=\"obj\">.",
     {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
     surface_children};
-const Plugin sphere_plugin{"shape",
-                           "sphere",
-                           "A sphere, exact.",
-                           {{"center", Type::point, "0 0 0", "m", "Centre"},
-                            {"radius", Type::real, "1", "m", "Radius"},
-                            to_world},
-                           surface_children};
+const Plugin sphere_plugin{
+    "shape",
+    "sphere",
+    "A sphere, exact.",
+    {{"center", Type::point, "0 0 0", "m", "Centre"}, {"radius", Type::real, "1", "m", "Radius"}, to_world},
+    surface_children};
 const Plugin rectangle_plugin{"shape",
                               "rectangle",
                               "The square [-1, 1] x [-1, 1] at z = 0, facing +z, under toWorld.",
@@ -59,40 +57,59 @@ std::filesystem::path existing_file(const Parameters& parameters, const std::fil
   const std::filesystem::path file = directory / parameters.text("filename");
   std::error_code error;
   if (!std::filesystem::exists(file, error))
-    throw InputError(parameters.location("filename"), fmt::format("'{}' is not there", parameters.text("filename")),
+    throw InputError(parameters.location("filename"),
+                     fmt::format("'{}' is not there", parameters.text("filename")),
                      fmt::format("looked for {}; paths are relative to the scene file", file.string()));
   if (std::filesystem::is_directory(file, error))
-    throw InputError(parameters.location("filename"), fmt::format("'{}' is a folder", parameters.text("filename")),
+    throw InputError(parameters.location("filename"),
+                     fmt::format("'{}' is a folder", parameters.text("filename")),
                      "give the name of an OBJ file");
   return file;
 }
 
-[[noreturn]] void throw_no_area(const Object& object, const std::string& name) {
-  throw InputError(object.location, fmt::format("the light on '{}' has no area, so it cannot shine", name),
-                   "give its mesh a triangle whose corners do not lie on one line");
+/// Throws where floats cannot tell the rectangle's corners apart, or its area is not finite.
+void check_area(const Object& object, const Vec3f& along_x, const Vec3f& along_y) {
+  const float area_sq = length_sq(cross(along_x, along_y));
+  if (!(area_sq > 0) || !std::isfinite(area_sq))
+    throw InputError(object.location, "this rectangle has no area that can be computed with",
+                     "it is too small, too large, or too far from the origin for its size");
 }
 
 Sphere make_sphere(const Parameters& parameters) {
   const Transform transform = world_from_object(parameters);
   const double radius = parameters.real("radius");
   if (!(radius > 0))
-    throw InputError(parameters.location("radius"), fmt::format("'radius' is {}; it must be positive", radius));
+    throw InputError(parameters.location("radius"),
+                     fmt::format("'radius' is {}; it must be positive", radius));
   // A sphere stays one only under a transform that scales all directions alike.
   const double along_x = length(transform_vector(transform, {1, 0, 0}));
   const double along_y = length(transform_vector(transform, {0, 1, 0}));
   const double along_z = length(transform_vector(transform, {0, 0, 1}));
-  if (std::max({along_x, along_y, along_z}) > 1.0001 * std::min({along_x, along_y, along_z}))
-    throw InputError(parameters.location("toWorld"),
-                     fmt::format("this transform makes an ellipsoid (it scales the axes by {:.4g}, {:.4g}, {:.4g})",
-                                 along_x, along_y, along_z),
-                     "scale all axes alike, or use a mesh");
+  const Vec3<double> x = transform_vector(transform, {1, 0, 0}), y = transform_vector(transform, {0, 1, 0}),
+                     z = transform_vector(transform, {0, 0, 1});
+  const double shear = std::max({std::abs(dot(x, y)), std::abs(dot(y, z)), std::abs(dot(z, x))});
+  if (std::max({along_x, along_y, along_z}) > 1.0001 * std::min({along_x, along_y, along_z}) ||
+      shear > 1e-4 * along_x * along_x)
+    throw InputError(
+        parameters.location("toWorld"),
+        fmt::format("this transform makes an ellipsoid (it scales the axes by {:.4g}, {:.4g}, {:.4g})",
+                    along_x, along_y, along_z),
+        "scale all axes alike and do not shear, or use a mesh");
   const Vec3<double> center = transform_point(transform, parameters.point("center"));
-  return {{float(center.x), float(center.y), float(center.z)}, float(radius * along_x)};
+  const Sphere sphere{{float(center.x), float(center.y), float(center.z)}, float(radius * along_x)};
+  if (!(sphere.radius > 0) || !std::isfinite(sphere.radius * sphere.radius) ||
+      !std::isfinite(length_sq(sphere.center)))
+    throw InputError(
+        parameters.object().location,
+        fmt::format("in the world this sphere has radius {:.4g} at {:.4g} {:.4g} {:.4g}: beyond what can be "
+                    "rendered",
+                    radius * along_x, center.x, center.y, center.z),
+        "scale the scene to common sizes");
+  return sphere;
 }
 
 }  // namespace
 
-bool is_shape(const Object& object) { return object.family == "mesh" || object.family == "shape"; }
 bool is_bsdf(const Object& object) { return object.family == "bsdf" || object.family == "brdf"; }
 bool is_light(const Object& object) { return object.family == "luminaire" || object.family == "emitter"; }
 
@@ -124,22 +141,25 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
       warnings.push_back(format_message(
           object.location, mesh.dropped_triangles == 1
                                ? fmt::format("1 triangle of '{}' has no area and is left out", name)
-                               : fmt::format("{} triangles of '{}' have no area and are left out", mesh.dropped_triangles, name)));
-    if (radiance && mesh.indices.empty()) throw_no_area(object, name);
+                               : fmt::format("{} triangles of '{}' have no area and are left out",
+                                             mesh.dropped_triangles, name)));
     const std::int32_t id = geometry.add_mesh(mesh, ids);
     if (radiance) lights.add(*radiance, name, LightKind::mesh, lights.meshes.add(geometry, id));
   } else if (object.type == sphere_plugin.name) {
     const Parameters parameters(object, sphere_plugin, unread);
     const Sphere sphere = make_sphere(parameters);
     geometry.add_sphere(sphere, ids);
-    if (radiance) lights.add(*radiance, label(object, numbered), LightKind::sphere, lights.spheres.add(sphere));
+    if (radiance)
+      lights.add(*radiance, label(object, numbered), LightKind::sphere, lights.spheres.add(sphere));
   } else if (object.type == rectangle_plugin.name) {
     const Parameters parameters(object, rectangle_plugin, unread);
     const Transform transform = world_from_object(parameters);
     const Mesh mesh = make_rectangle(transform);
+    const Vec3f &corner = mesh.positions[0], along_x = mesh.positions[1] - corner,
+                along_y = mesh.positions[3] - corner;
+    check_area(object, along_x, along_y);
     geometry.add_mesh(mesh, ids);
     if (radiance) {
-      const Vec3f &corner = mesh.positions[0], along_x = mesh.positions[1] - corner, along_y = mesh.positions[3] - corner;
       // The front stays in front under a mirroring transform, as for the mesh.
       const bool is_mirrored = determinant(transform) < 0;
       const std::int32_t row =

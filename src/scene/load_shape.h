@@ -1,18 +1,17 @@
 // One shape of the file -> geometry, and a light where it shines.
 #pragma once
 
+#include "geometry/geometry.h"
+#include "light/light.h"
+#include "scenefile/parameters.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "geometry/geometry.h"
-#include "light/light.h"
-#include "scenefile/parameters.h"
-
 namespace etendue {
 
-bool is_shape(const Object& object);  ///< <mesh> or <shape>
 bool is_bsdf(const Object& object);   ///< <bsdf> or <brdf>
 bool is_light(const Object& object);  ///< <luminaire> or <emitter>
 
@@ -22,8 +21,9 @@ const std::vector<Plugin>& light_plugins();
 /// W/(m^2 sr). Throws InputError for an unknown light or a negative radiance.
 Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& unread);
 
-/// Reads or makes the shape `object` and adds it to `geometry`, and to `lights` where it has a radiance. Throws
-/// InputError for an unknown shape, a file that cannot be read, a singular transform, a light without area.
+/// Reads or makes the shape `object` and adds it to `geometry`, and to `lights` where it has a radiance.
+/// Throws InputError for an unknown shape, a file that cannot be read, a singular transform, a light without
+/// area.
 void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
                         const std::optional<Colorf>& radiance, Geometry& geometry, Lights& lights,
                         std::vector<UnreadKey>& unread, std::vector<std::string>& warnings);

@@ -1,9 +1,6 @@
 // The immutable whole that is rendered: tables and indices.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "bsdf/bsdf.h"
 #include "film/filter.h"
 #include "geometry/camera.h"
@@ -11,6 +8,9 @@
 #include "geometry/raycast.h"
 #include "light/light.h"
 #include "sampler/sampler.h"
+
+#include <string>
+#include <vector>
 
 namespace etendue {
 

@@ -324,9 +324,9 @@ Property Reader::read_property(const Element& element) const {
   }
   if (const auto* transform = std::get_if<Transform>(&property.value);
       transform && !is_invertible(*transform))
-    throw InputError(property.value_location,
-                     fmt::format("the transform '{}' cannot be inverted", property.name),
-                     "check it for a scale of 0, for equal rows or columns, and for numbers too large or too small");
+    throw InputError(
+        property.value_location, fmt::format("the transform '{}' cannot be inverted", property.name),
+        "check it for a scale of 0, for equal rows or columns, and for numbers too large or too small");
   return property;
 }
 

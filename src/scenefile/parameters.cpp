@@ -140,16 +140,22 @@ std::vector<std::string> names_of(const std::vector<T>& named) {
 
 Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<UnreadKey>& unread)
     : object_(&object) {
+  for (const Object& child : object.children)
+    if (std::find(plugin.child_families.begin(), plugin.child_families.end(), child.family) ==
+        plugin.child_families.end())
+      throw InputError(child.location,
+                       fmt::format("<{}> has no place inside <{}>", child.family, object.family),
+                       plugin.child_families.empty() ? "nothing may stand in there but its keys"
+                                                     : known_names(child.family, plugin.child_families));
   for (const Property& property : object.properties) {
     const auto parameter =
         std::find_if(plugin.parameters.begin(), plugin.parameters.end(),
                      [&](const Parameter& candidate) { return candidate.name == property.name; });
     if (parameter == plugin.parameters.end()) {
-      unread.push_back({format_message(property.name_location,
-                                       fmt::format("unknown key '{}' of {}", property.name, label(object)),
-                                       plugin.parameters.empty()
-                                           ? "it has no keys at all; was this meant for another element?"
-                                           : known_names(property.name, names_of(plugin.parameters)))});
+      unread.push_back({format_message(
+          property.name_location, fmt::format("unknown key '{}' of {}", property.name, label(object)),
+          plugin.parameters.empty() ? "it has no keys at all; was this meant for another element?"
+                                    : known_names(property.name, names_of(plugin.parameters)))});
       continue;
     }
     if (is_stated(property.name))

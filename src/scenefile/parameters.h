@@ -38,8 +38,8 @@ struct UnreadKey {
 /// Object and plugin must outlive it. To ask for what the plugin does not have is a std::logic_error.
 class Parameters {
  public:
-  /// Throws InputError for a wrong type, a missing required parameter or one stated twice. Keys that the
-  /// plugin does not know are appended to `unread`.
+  /// Throws InputError for a wrong type, a missing required parameter, one stated twice, or a child of
+  /// another family. Keys that the plugin does not know are appended to `unread`.
   Parameters(const Object& object, const Plugin& plugin, std::vector<UnreadKey>& unread);
 
   bool is_stated(std::string_view name) const;  ///< The file has it (no default was used).
