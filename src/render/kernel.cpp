@@ -47,7 +47,7 @@ void render_tile(TileJob& job) {
     run_integrator<F>(job.settings->integrator, *job.scene, block, job.settings->is_reordering);
     set_invalid_aside(job, block, pixels.samples_per_replicate(), pixels);
     pixels.add_to_film(block, *job.film);
-    job.samples += block.count;
+    job.samples = pixels.samples_in_film();
     block.clock.finish(Stage::sums);
     if (job.on_block) {
       (*job.on_block)(block);

@@ -19,9 +19,9 @@ struct TileJob {
   SampleBlock* block;  ///< Scratch of this thread.
   Film* film;
   std::vector<InvalidSample>* invalid;
-  const std::atomic<bool>* stop = nullptr;  ///< Asked between blocks.
-  std::int64_t samples = 0, invalid_samples = 0;
-  bool is_stopped = false;  ///< Some pixels of the tile were not rendered.
+  const std::atomic<bool>* stop = nullptr;        ///< Asked between blocks.
+  std::int64_t samples = 0, invalid_samples = 0;  ///< `samples`: of pixels that are whole.
+  bool is_stopped = false;                        ///< Some pixels of the tile were not rendered.
   /// Called after each block, where set: benchmarks look at the rays.
   const std::function<void(const SampleBlock&)>* on_block = nullptr;
 };

@@ -24,6 +24,7 @@ class PixelBlocks {
     y_ = job.y_begin;
   }
 
+  std::int64_t samples_in_film() const { return samples_in_film_; }  ///< Of pixels that are whole.
   int samples_per_replicate() const { return per_replicate_; }
   /// The sample of its pixel, over all replicates, that stands at position `i` of the block.
   std::int64_t sample_of(int i) const { return first_sample_ + i % samples_in_block_; }
@@ -67,8 +68,9 @@ class PixelBlocks {
                                             sum_b_.take() * scale};
         }
       });
-      if (first_sample_ + samples_in_block_ == samples_)
-        film.at(pixel.x, pixel.y) = combine_replicates(means_, 0);
+      if (first_sample_ + samples_in_block_ < samples_) continue;
+      film.at(pixel.x, pixel.y) = combine_replicates(means_, 0);
+      samples_in_film_ += samples_;
     }
     first_sample_ += samples_in_block_;
     if (first_sample_ < samples_) return;
@@ -123,6 +125,7 @@ class PixelBlocks {
 
   const TileJob& job_;
   const int samples_, per_replicate_;
+  std::int64_t samples_in_film_ = 0;
   int width_ = 1, height_ = 1;  ///< Pixels a block.
   int x_ = 0, y_ = 0;           ///< Upper left of the current block.
   int first_sample_ = 0, samples_in_block_ = 0;
