@@ -6,7 +6,7 @@
 namespace etendue::bench {
 
 /// A displaced terrain of 2 grid^2 triangles and 64 balls of 2 (grid / 14 + 4)^2 each, diffuse and Phong by
-/// turns, lit by 4 mesh lights of 32 triangles. grid 65: 18 thousand triangles; 700: 1.35 million. \param
+/// turns, lit by 4 mesh lights of 32 triangles. grid 65: 17 thousand triangles; 700: 1.35 million. \param
 /// has_normals whether the meshes have vertex normals
 Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals);
 

@@ -45,7 +45,6 @@ inline LoadedScene load_scene_text(const std::string& body, const std::vector<Sc
   const TemporaryFolder folder;
   for (const SceneFile& file : files) std::ofstream(folder.path() / file.name) << file.text;
   std::ofstream(folder.path() / "scene.xml") << "<scene>\n" << body << "</scene>\n";
-  // Not with 1 thread: Embree would hold all of TBB to it as long as the scene lives.
   return load_scene(read_nori_xml(folder.path() / "scene.xml", Dialect::nori_2012));
 }
 
