@@ -82,11 +82,9 @@ Sphere make_sphere(const Parameters& parameters) {
     throw InputError(parameters.location("radius"),
                      fmt::format("'radius' is {}; it must be positive", radius));
   // A sphere stays one only under a transform that scales all directions alike.
-  const double along_x = length(transform_vector(transform, {1, 0, 0}));
-  const double along_y = length(transform_vector(transform, {0, 1, 0}));
-  const double along_z = length(transform_vector(transform, {0, 0, 1}));
   const Vec3<double> x = transform_vector(transform, {1, 0, 0}), y = transform_vector(transform, {0, 1, 0}),
                      z = transform_vector(transform, {0, 0, 1});
+  const double along_x = length(x), along_y = length(y), along_z = length(z);
   const double shear = std::max({std::abs(dot(x, y)), std::abs(dot(y, z)), std::abs(dot(z, x))});
   if (std::max({along_x, along_y, along_z}) > 1.0001 * std::min({along_x, along_y, along_z}) ||
       shear > 1e-4 * along_x * along_x)
