@@ -1,12 +1,12 @@
 // Camera rays: a sample's place on the film, importance-sampled from the pixel filter, and the ray through
-// it.
+// it, by way of a point of the lens where the camera has one.
 #pragma once
 
+#include "base/warp.h"
 #include "integrator/sample_block.h"
 #include "sampler/sampler.h"
 #include "scene/scene.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace etendue {
@@ -29,26 +29,48 @@ template <class F>
   path.count = block.count;
   path.padded_count = block.padded_count;
   block.is_in_sample_order = true;
-  for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const Vec2<F> u_film = to_unit_floats<F>(sample_bits<F>(scene, path, i, dimension::film));
-    const F x_px =
-        to_float(load_lanes<Int<F>>(&block.pixel_x[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.x);
-    const F y_px =
-        to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
-    const CameraRay<F> ray = scene.camera.ray(x_px, y_px);
-    store_lanes(path.ray.origin, i, ray.origin);
-    store_lanes(path.ray.direction, i, ray.direction);
-    store_lanes(&path.ray.t_near[i], ray.t_near);
-    store_lanes(&path.ray.t_far[i], ray.t_far);
-    store_lanes(&path.ray.is_active[i], Int<F>(-1));
-    store_lanes(path.throughput, i, Color<F>{F(1), F(1), F(1)});
-    store_lanes(&path.pdf[i], F(std::numeric_limits<float>::infinity()));
-    store_lanes(&path.eta[i], F(1));
-    store_lanes(block.radiance, i, black<F>());
-  }
+  const auto for_each_packet = [&](const auto& ray_at) {
+    for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
+      const Vec2<F> u_film = to_unit_floats<F>(sample_bits<F>(scene, path, i, dimension::film));
+      const F x_px =
+          to_float(load_lanes<Int<F>>(&block.pixel_x[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.x);
+      const F y_px =
+          to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
+      if (scene.filter.is_signed())
+        store_lanes(&block.filter_weight[i], scene.filter.sample_weight(u_film.x, u_film.y));
+      const CameraRay<F> ray = ray_at(i, x_px, y_px);
+      store_lanes(path.ray.origin, i, ray.origin);
+      store_lanes(path.ray.direction, i, ray.direction);
+      store_lanes(&path.ray.t_near[i], ray.t_near);
+      store_lanes(&path.ray.t_far[i], ray.t_far);
+      store_lanes(&path.ray.is_active[i], Int<F>(-1));
+      store_lanes(path.throughput, i, Color<F>{F(1), F(1), F(1)});
+      store_lanes(&path.pdf[i], F(std::numeric_limits<float>::infinity()));
+      store_lanes(&path.eta[i], F(1));
+      store_lanes(block.radiance, i, black<F>());
+    }
+  };
+  const Camera& camera = scene.camera;
+  if (camera.has_lens)
+    for_each_packet([&](int i, const F& x_px, const F& y_px) {
+      const Vec2<F> u_lens = to_unit_floats<F>(sample_bits<F>(scene, path, i, dimension::lens));
+      return camera.ray(x_px, y_px, square_to_uniform_disk(u_lens));
+    });
+  else
+    for_each_packet([&](int, const F& x_px, const F& y_px) { return camera.ray(x_px, y_px); });
   for (int i = 0; i < block.padded_count; ++i) path.sample[i] = i;
   block.counts.camera_rays += block.count;
   block.clock.finish(Stage::camera_rays);
+}
+
+/// Multiplies each sample's radiance by the weight that belongs to its place under the pixel filter: after
+/// the last look at what radiances are valid. Nothing to do for filters without negative lobes.
+template <class F>
+void weigh_by_filter(const Scene& scene, SampleBlock& block) {
+  if (!scene.filter.is_signed()) return;
+  for (int i = 0; i < block.padded_count; i += lane_count_v<F>)
+    store_lanes(block.radiance, i,
+                load_lanes<F>(block.radiance, i) * load_lanes<F>(&block.filter_weight[i]));
 }
 
 }  // namespace etendue
