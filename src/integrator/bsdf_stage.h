@@ -55,11 +55,16 @@ template <class F>
         mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
     if (rules.is_dirac_only) goes_on = mask_and(goes_on, is_dirac);
     if (vertex_number >= first_roulette_vertex) {
+      const Mask<F> is_number =
+          mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
+                   is_finite_nonnegative(throughput.b));
+      const Mask<F> is_lost = mask_and(goes_on, mask_not(is_number));
+      // What is not a number must reach the sum, where it is reported, and no die decides on it.
+      if (any(is_lost)) add_radiance<F>(block, i, is_lost, throughput);
       const F probability = survival(throughput, eta);
       const F u_roulette = to_unit_float(
           sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex_number)).x);
-      // What is not a number goes on, or it would never reach the sum, where it is reported.
-      goes_on = mask_and(goes_on, mask_not(u_roulette >= probability));
+      goes_on = mask_and(goes_on, is_number, u_roulette < probability);
       throughput = throughput * (F(1) / probability);
     }
     store_mask<F>(&block.next_ray.is_active[i], goes_on);

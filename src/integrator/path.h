@@ -16,6 +16,7 @@ void arrive(const Scene& scene, SampleBlock& block, const PathRules& rules, int 
   if (scene.medium) fly_through_medium<F>(scene, block, vertex);
   add_emission<F>(scene, block, rules);
   if (scene.lights.infinite_count() > 0) add_environment<F>(scene, block, rules);
+  block.shadow_count = 0;
 }
 
 /// Each sample is a path from the camera. At each of its vertices: the emission that it meets, the light that
@@ -25,9 +26,10 @@ void path(const Scene& scene, SampleBlock& block, const PathRules& rules, bool i
   camera_rays<F>(scene, block);
   for (int vertex = 0; block.path.count > 0; ++vertex) {
     arrive<F>(scene, block, rules, vertex);
-    if (vertex == rules.most_vertices) break;
-    if (rules.has_light_samples()) add_light_samples<F>(scene, block, rules, vertex, is_reordering);
-    const bool is_followed = rules.is_followed(vertex);
+    const bool is_scattering = vertex < rules.most_vertices;
+    if (is_scattering && rules.has_light_samples())
+      add_light_samples<F>(scene, block, rules, vertex, is_reordering);
+    const bool is_followed = is_scattering && rules.is_followed(vertex);
     if (is_followed) sample_bsdf<F>(scene, block, rules, vertex, 0);
     if (block.on_vertex) (*block.on_vertex)(block, vertex);
     if (!is_followed) break;

@@ -91,14 +91,14 @@ struct SampleBlock {
   Column<std::int32_t> shadow_is_needed, shadow_is_free;
   Column<std::int32_t> aim;    ///< light * light_pieces + piece; after aiming, the bin.
   Column<std::int32_t> order;  ///< Of tracing: rows of `path`, then -1.
-  int shadow_count = 0;
+  int shadow_count = 0;        ///< 0 where no light has been sampled since the last vertex.
 
   RayColumns next_ray;  ///< Along the direction that the BSDF was sampled for.
 
   BlockCounts counts;
   StageClock clock;
-  /// Called with the number of each vertex once its samples are taken, where set: benchmarks and replays look
-  /// on.
+  /// Called with the number of each vertex once its samples have been taken, where set: benchmarks and replays
+  /// look on.
   const std::function<void(const SampleBlock&, int vertex)>* on_vertex = nullptr;
 };
 

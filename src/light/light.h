@@ -29,6 +29,7 @@ class Lights {
   std::int32_t add(const Colorf& radiance, std::string name, LightKind kind, std::int32_t row);
 
   std::int32_t count() const { return kind_.size(); }
+  int infinite_count() const { return 0; }
   const std::string& name(std::int32_t light) const { return names_[std::size_t(light)]; }
 
   /// Whether shadow packets that aim at one piece of one light are best traced as one. The random choice of a

@@ -2,6 +2,7 @@
 
 #include "scene/load_shape.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 #include <optional>
@@ -38,9 +39,11 @@ class Loader {
                                    description_.dialect == Dialect::nori_2012 ? "luminaire" : "emitter"));
     const Clock::time_point start = Clock::now();
     RayCaster rays(geometry_);
+    const bool has_textures = std::any_of(materials_.begin(), materials_.end(),
+                                          [](const Bsdf& material) { return has_texture(material); });
     const double seconds_build = seconds_since(start);
     return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_),
-                  std::move(rays), std::move(materials_), std::move(lights_), sampler_},
+                  std::move(rays), std::move(materials_), has_textures, std::move(lights_), medium_, sampler_},
             integrator_ ? *integrator_ : Object{},
             samples_per_pixel_,
             warnings(),
@@ -51,7 +54,7 @@ class Loader {
  private:
   static const Plugin& scene_plugin() {
     static const Plugin plugin{
-        "scene", "", "", {}, {"integrator", "sampler", "camera", "mesh", "shape", "rfilter"}};
+        "scene", "", "", {}, {"integrator", "sampler", "camera", "mesh", "shape", "rfilter", "medium"}};
     return plugin;
   }
 
@@ -72,6 +75,9 @@ class Loader {
     } else if (child.family == "integrator") {
       once(integrator_.has_value(), child);
       integrator_ = child;
+    } else if (child.family == "medium") {
+      once(medium_.has_value(), child);
+      medium_ = make_medium(child, unread_);
     } else {
       const Clock::time_point start = Clock::now();
       add_shape(child);
@@ -143,6 +149,7 @@ class Loader {
   Geometry geometry_;
   std::vector<Bsdf> materials_;
   Lights lights_;
+  std::optional<HomogeneousMedium> medium_;
   std::vector<UnreadKey> unread_;
   std::vector<std::string> warnings_;
   double seconds_read_ = 0;
