@@ -21,7 +21,7 @@ LightSample<F> sample_lights(const Scene& scene, const PathRules& rules, const P
   const std::uint32_t pair = dimension::at_vertex(dimension::light, vertex_number);
   if (rules.is_every_light) {
     const Vec2<UInt<F>> u_light = sample_bits<F>(scene, path, i, pair, number, scene.lights.count());
-    return sample_chosen_light<F>(scene, {Int<F>(number), F(1), u_light.x}, vertex.position, u_light.y,
+    return sample_chosen_light<F>(scene, {.light = Int<F>(number), .u_left = u_light.x, .pmf = F(1)}, vertex.position, u_light.y,
                                   vertex.is_there);
   }
   const Vec2<UInt<F>> u_light = sample_bits<F>(scene, path, i, pair, number, rules.light_samples);
