@@ -7,10 +7,15 @@ const std::vector<Plugin>& bsdf_plugins() {
   return plugins;
 }
 
-Bsdf make_bsdf(const Object& description, std::vector<UnreadKey>& unread) {
+Bsdf make_bsdf(const Object& description, const std::filesystem::path& directory,
+               std::vector<UnreadKey>& unread) {
   if (description.type == diffuse_plugin.name) return make_diffuse(description, unread);
   if (description.type == phong_plugin.name) return make_phong(description, unread);
   throw unknown_plugin(description, bsdf_plugins());
+}
+
+bool has_texture(const Bsdf& material) {
+  return std::visit([](const auto& model) { return model.has_texture(); }, material);
 }
 
 }  // namespace etendue

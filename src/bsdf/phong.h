@@ -18,6 +18,12 @@ struct Phong {
   float exponent = 20;
   float specular_probability = 0.5f;
 
+  bool has_texture() const { return false; }
+  template <class F>
+  const Phong& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {
+    return *this;
+  }
+
   template <class F>
   Color<F> eval_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const auto is_above = mask_and(wo_local.z > F(0), wi_local.z > F(0));

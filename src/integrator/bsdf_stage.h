@@ -28,7 +28,7 @@ void sample_bsdf(const Scene& scene, SampleBlock& block) {
     const Frame<F> frame(surface.ns);
     const Vec3<F> wo_local = frame.local_from_world(surface.wo);
     BsdfSample<F> sample{{F(0), F(0), F(1)}, {F(0), F(0), F(0)}, F(0)};
-    for_each_material<F>(scene.materials, surface.material, surface.is_there,
+    for_each_material<F>(scene.materials, surface.material, Vec2<F>{F(0), F(0)}, surface.is_there,
                          [&](const auto& bsdf, const Mask<F>& lanes) {
                            sample = select(lanes, bsdf.sample_(wo_local, u_bsdf), sample);
                          });

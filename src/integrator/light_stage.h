@@ -31,16 +31,17 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
     const Vec3<F> wo_local = frame.local_from_world(surface.wo), wi_local = frame.local_from_world(sample.wi);
     const Mask<F> is_lit = mask_and(sample.is_facing, surface.reflects_towards(sample.wi));
     Color<F> reflected = black<F>();
-    for_each_material<F>(
-        scene.materials, surface.material, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
-          const F weight = needs_both_pdfs(combination)
-                               ? mis_weight(combination, select(lanes, sample.pdf_solid_angle(), F(1)),
-                                            bsdf.pdf_solid_angle_(wo_local, wi_local))
-                               : mis_weight(combination, F(1), F(1));
-          const Color<F> f =
-              bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (wi_local.z * weight);
-          reflected = select(lanes, f, reflected);
-        });
+    for_each_material<F>(scene.materials, surface.material, Vec2<F>{F(0), F(0)}, is_lit,
+                         [&](const auto& bsdf, const Mask<F>& lanes) {
+                           const F weight =
+                               needs_both_pdfs(combination)
+                                   ? mis_weight(combination, select(lanes, sample.pdf_solid_angle(), F(1)),
+                                                bsdf.pdf_solid_angle_(wo_local, wi_local))
+                                   : mis_weight(combination, F(1), F(1));
+                           const Color<F> f = bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf *
+                                              (wi_local.z * weight);
+                           reflected = select(lanes, f, reflected);
+                         });
 
     store_lanes(block.unshadowed, i, reflected);
     // Not "greater than 0": a NaN must reach the sum, where it is reported.

@@ -112,7 +112,7 @@ class Loader {
       }
     }
     SurfaceIds ids{.material = std::int32_t(materials_.size())};
-    materials_.push_back(bsdf ? make_bsdf(*bsdf, unread_) : Bsdf{Diffuse{}});
+    materials_.push_back(bsdf ? make_bsdf(*bsdf, description_.directory, unread_) : Bsdf{Diffuse{}});
     std::optional<Colorf> radiance;
     if (light) {
       radiance = area_light_radiance(*light, unread_);

@@ -128,21 +128,27 @@ void smooth_normal(const Scene& scene, Packet& p) {
   p.give(interpolate_normal<F>(scene.geometry, geometry, primitive, p.square(), every_lane()));
 }
 
+/// f(model), for the material of this index at uv = 0.
+template <int material, class Function>
+void visit_bsdf(const Scene& scene, Function&& f) {
+  for_each_material<F>(scene.materials, I(material), Vec2<F>{F(0), F(0)}, every_lane(),
+                       [&](const auto& bsdf, const M&) { f(bsdf); });
+}
 template <int material>
 void bsdf_eval(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec(), wi = p.vec();
-  std::visit([&](const auto& bsdf) { p.give(bsdf.eval_(wo, wi)); }, scene.materials[material]);
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.eval_(wo, wi)); });
 }
 template <int material>
 void bsdf_pdf(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec(), wi = p.vec();
-  std::visit([&](const auto& bsdf) { p.give(bsdf.pdf_solid_angle_(wo, wi)); }, scene.materials[material]);
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.pdf_solid_angle_(wo, wi)); });
 }
 template <int material>
 void bsdf_sample(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec();
   const Vec2<F> u_bsdf = p.square();
-  std::visit([&](const auto& bsdf) { p.give(bsdf.sample_(wo, u_bsdf).wi_local); }, scene.materials[material]);
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.sample_(wo, u_bsdf).wi_local); });
 }
 
 void light_position(const Scene& scene, Packet& p) {
