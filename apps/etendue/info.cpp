@@ -20,8 +20,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string_view type_name(Parameter::Type type) {
-  constexpr std::array names{"boolean", "integer", "float",  "string",
-                             "color",   "point",   "vector", "transform"};
+  constexpr std::array names{"boolean", "integer", "float",     "string", "color",
+                             "point",   "vector",  "transform", "point"};
   return names[std::size_t(type)];
 }
 
@@ -32,6 +32,7 @@ Json describe(const Plugin& plugin) {
                           {"type", type_name(parameter.type)},
                           {"default", parameter.default_value},
                           {"is_required", parameter.is_required},
+                          {"accepts_texture", parameter.accepts_texture},
                           {"unit", parameter.unit},
                           {"meaning", parameter.meaning}});
   return {{"name", plugin.name}, {"meaning", plugin.meaning}, {"parameters", parameters}};

@@ -6,7 +6,9 @@
 #pragma once
 
 #include "bsdf/bsdf_sample.h"
+#include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
+#include "bsdf/mirror.h"
 #include "bsdf/phong.h"
 #include "scenefile/parameters.h"
 
@@ -40,8 +42,8 @@ concept Material = requires(const M& material, const Vec2<float>& uv, bool lanes
   { material.has_texture() } -> std::same_as<bool>;
 };
 
-using Bsdf = std::variant<Diffuse, Phong>;
-static_assert(Material<Diffuse> && Material<Phong>);
+using Bsdf = std::variant<Diffuse, Phong, Mirror, Dielectric>;
+static_assert(Material<Diffuse> && Material<Phong> && Material<Mirror> && Material<Dielectric>);
 
 const std::vector<Plugin>& bsdf_plugins();
 
