@@ -256,8 +256,8 @@ int run(const Options& options) {
                      rendered = count_rendered(result.film);
   if (result.is_interrupted)
     image.metadata.emplace_back("pixelsNotRendered", std::to_string(pixels - rendered));
-  if (settings.integrator.kind == IntegratorKind::mis)
-    image.metadata.emplace_back("heuristic", heuristic_name(settings.integrator.heuristic));
+  if (needs_both_pdfs(settings.integrator.rules.direct_light))
+    image.metadata.emplace_back("heuristic", heuristic_name(settings.integrator.rules.direct_light));
   for (const std::filesystem::path output : options.outputs)
     output.extension() == ".png" ? write_png(output, image) : write_exr(output, image);
   if (!options.stats_file.empty())
