@@ -237,8 +237,8 @@ TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
   RunningStatistics irradiance;
   for (int i = 0; i < samples; ++i) {
     const LightSample<float> sample = sample_lights<float>(scene, {0, 0, 0}, random.square(), true);
-    irradiance.add(sample.is_facing ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
-    if (!sample.is_facing) continue;
+    irradiance.add(sample.is_there ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
+    if (!sample.is_there) continue;
     const std::int32_t light = sample.light;
     const Vec3f ng = light == 1   ? Vec3f(normalize(sample.position - Vec3f{1, 2, 1}))
                      : light == 0 ? Vec3f{float(normalize(cross(half_u, half_v)).x),
