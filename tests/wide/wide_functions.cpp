@@ -4,7 +4,7 @@
 #include "base/frame.h"
 #include "base/warp.h"
 #include "integrator/light_sampling.h"
-#include "integrator/mis_weights.h"
+#include "integrator/path_rules.h"
 
 #include <iterator>
 
