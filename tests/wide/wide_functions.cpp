@@ -109,6 +109,7 @@ void uniform_cone(const Scene&, Packet& p) {
   p.give(square_to_uniform_cone(u, p.real()));
 }
 void uniform_cone_pdf(const Scene&, Packet& p) { p.give(uniform_cone_pdf_solid_angle(p.real())); }
+void uniform_disk(const Scene&, Packet& p) { p.give(square_to_uniform_disk(p.square())); }
 void uniform_sphere(const Scene&, Packet& p) { p.give(square_to_uniform_sphere(p.square())); }
 
 void frame(const Scene&, Packet& p) {
@@ -118,9 +119,19 @@ void frame(const Scene&, Packet& p) {
 }
 
 void filter_offset(const Scene& scene, Packet& p) { p.give(scene.filter.sample_offset_px(p.real())); }
+void signed_filter_offset(const Scene&, Packet& p) {
+  static const PixelFilter filter = PixelFilter::mitchell();
+  const Vec2<F> u = p.square();
+  p.give(filter.sample_offset_px(u.x)), p.give(filter.sample_weight(u.x, u.y));
+}
 void camera_ray(const Scene& scene, Packet& p) {
   const Vec2<F> at = p.square();
   const CameraRay<F> ray = scene.camera.ray(at.x, at.y);
+  p.give(ray.origin), p.give(ray.direction), p.give(ray.t_near), p.give(ray.t_far);
+}
+void lens_ray(const Scene& scene, Packet& p) {
+  const Vec2<F> at = p.square();
+  const CameraRay<F> ray = scene.camera.ray(at.x, at.y, p.square());
   p.give(ray.origin), p.give(ray.direction), p.give(ray.t_near), p.give(ray.t_far);
 }
 void smooth_normal(const Scene& scene, Packet& p) {
@@ -200,10 +211,13 @@ constexpr WideFunction functions[]{
     {"power_cosine_pdf", 2, 1, Words::floats, run<power_cosine_pdf>},
     {"square_to_uniform_cone", 3, 3, Words::floats, run<uniform_cone>},
     {"uniform_cone_pdf", 1, 1, Words::floats, run<uniform_cone_pdf>},
+    {"square_to_uniform_disk", 2, 2, Words::floats, run<uniform_disk>},
     {"square_to_uniform_sphere", 2, 3, Words::floats, run<uniform_sphere>},
     {"Frame", 6, 12, Words::floats, run<frame>},
     {"sample_offset_px", 1, 1, Words::floats, run<filter_offset>},
+    {"sample_offset_px, sample_weight", 2, 2, Words::floats, run<signed_filter_offset>},
     {"Camera::ray", 2, 8, Words::floats, run<camera_ray>},
+    {"Camera::ray, lens", 4, 8, Words::floats, run<lens_ray>},
     {"interpolate_normal", 4, 3, Words::floats, run<smooth_normal>},
     {"Diffuse::eval_", 6, 3, Words::floats, run<bsdf_eval<0>>},
     {"Diffuse::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<0>>},
