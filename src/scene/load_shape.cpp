@@ -1,6 +1,7 @@
 #include "scene/load_shape.h"
 
 #include "geometry/obj_reader.h"
+#include "geometry/ply_reader.h"
 #include "geometry/shapes.h"
 
 #include <algorithm>
@@ -20,6 +21,13 @@ const Plugin obj_plugin{
     "shape",
     "obj",
     "A triangle mesh from a Wavefront OBJ file; written as <mesh type=\"obj\"> or <shape type=\"obj\">.",
+    {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
+    surface_children};
+const Plugin ply_plugin{
+    "shape",
+    "ply",
+    "A triangle mesh from a PLY file, ASCII or binary; written as <mesh type=\"ply\"> or <shape "
+    "type=\"ply\">.",
     {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
     surface_children};
 const Plugin sphere_plugin{
@@ -63,7 +71,7 @@ std::filesystem::path existing_file(const Parameters& parameters, const std::fil
   if (std::filesystem::is_directory(file, error))
     throw InputError(parameters.location("filename"),
                      fmt::format("'{}' is a folder", parameters.text("filename")),
-                     "give the name of an OBJ file");
+                     "give the name of a mesh file");
   return file;
 }
 
@@ -112,7 +120,7 @@ bool is_bsdf(const Object& object) { return object.family == "bsdf" || object.fa
 bool is_light(const Object& object) { return object.family == "luminaire" || object.family == "emitter"; }
 
 const std::vector<Plugin>& shape_plugins() {
-  static const std::vector<Plugin> plugins{obj_plugin, sphere_plugin, rectangle_plugin};
+  static const std::vector<Plugin> plugins{obj_plugin, ply_plugin, sphere_plugin, rectangle_plugin};
   return plugins;
 }
 
@@ -130,10 +138,11 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
                         const std::optional<Colorf>& radiance, Geometry& geometry, Lights& lights,
                         std::vector<UnreadKey>& unread, std::vector<std::string>& warnings) {
   const std::string numbered = fmt::format("{} {}", object.type, geometry.count() + 1);
-  if (object.type == obj_plugin.name) {
-    const Parameters parameters(object, obj_plugin, unread);
+  if (object.type == obj_plugin.name || object.type == ply_plugin.name) {
+    const bool is_obj = object.type == obj_plugin.name;
+    const Parameters parameters(object, is_obj ? obj_plugin : ply_plugin, unread);
     const std::filesystem::path file = existing_file(parameters, directory);
-    const Mesh mesh = read_obj(file, world_from_object(parameters));
+    const Mesh mesh = (is_obj ? read_obj : read_ply)(file, world_from_object(parameters));
     const std::string name = label(object, file.stem().string());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(
