@@ -3,6 +3,7 @@
 #include "film/filter.h"
 #include "geometry/camera.h"
 #include "integrator/integrator.h"
+#include "noritest/noritest.h"
 #include "render/isa.h"
 #include "render/render.h"
 #include "sampler/sampler.h"
@@ -68,6 +69,7 @@ Json describe_program() {
   json["shapes"] = describe(shape_plugins());
   json["bsdfs"] = describe(bsdf_plugins());
   json["lights"] = describe(light_plugins());
+  json["tests"] = describe(test_plugins());
   return json;
 }
 
@@ -79,7 +81,8 @@ void print(const Json& json) {
   for (const auto& [name, version] : json["dependencies"].items())
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
-  for (const char* family : {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights"}) {
+  for (const char* family :
+       {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights", "tests"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());
