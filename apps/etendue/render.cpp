@@ -214,11 +214,11 @@ int run(const Options& options) {
   const SceneDesc description = read_nori_xml(options.scene_file, dialect);
   const ThreadLimit thread_limit(options.threads);
   LoadedScene loaded = load_scene(description);
-  check_has_light(description, loaded.scene);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
   std::vector<UnreadKey> unread;
   settings.integrator = integrator_for(options, loaded, description.dialect, unread);
+  if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   for (const UnreadKey& key : unread) loaded.warnings.push_back(key.message);
   warn(options, loaded.warnings);
   if (!options.replay.empty()) {

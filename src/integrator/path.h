@@ -27,7 +27,7 @@ void path(const Scene& scene, SampleBlock& block, const PathRules& rules, bool i
   for (int vertex = 0; block.path.count > 0; ++vertex) {
     arrive<F>(scene, block, rules, vertex);
     const bool is_scattering = vertex < rules.most_vertices;
-    if (is_scattering && rules.has_light_samples())
+    if (is_scattering && rules.has_light_samples() && scene.lights.count() > 0)
       add_light_samples<F>(scene, block, rules, vertex, is_reordering);
     const bool is_followed = is_scattering && rules.is_followed(vertex);
     if (is_followed) sample_bsdf<F>(scene, block, rules, vertex, 0);
@@ -43,7 +43,8 @@ void direct_light_by_several(const Scene& scene, SampleBlock& block, const PathR
                              bool is_reordering) {
   camera_rays<F>(scene, block);
   arrive<F>(scene, block, rules, 0);
-  if (rules.has_light_samples()) add_light_samples<F>(scene, block, rules, 0, is_reordering);
+  if (rules.has_light_samples() && scene.lights.count() > 0)
+    add_light_samples<F>(scene, block, rules, 0, is_reordering);
   const auto at_vertex = std::make_unique<PathColumns>(block.path);
   for (int number = 0; number < rules.bsdf_samples; ++number) {
     block.path = *at_vertex;
