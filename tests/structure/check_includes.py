@@ -18,7 +18,7 @@ import sys
 import tempfile
 
 # scenefile comes early because the plugins of every family state their parameters through it.
-FOLDERS = ["base", "stats", "scenefile", "sampler", "film", "geometry", "bsdf", "light", "lightsampler", "scene",
+FOLDERS = ["base", "stats", "scenefile", "sampler", "film", "geometry", "texture", "bsdf", "light", "lightsampler", "scene",
            "integrator", "render"]
 TOPS = ["src", "apps", "tests", "bench"]
 MAX_HEADER_LINES = 150
