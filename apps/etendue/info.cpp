@@ -67,6 +67,7 @@ Json describe_program() {
   json["filters"] = describe(filter_plugins());
   json["shapes"] = describe(shape_plugins());
   json["bsdfs"] = describe(bsdf_plugins());
+  json["textures"] = describe(texture_plugins());
   json["lights"] = describe(light_plugins());
   return json;
 }
@@ -79,7 +80,8 @@ void print(const Json& json) {
   for (const auto& [name, version] : json["dependencies"].items())
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
-  for (const char* family : {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights"}) {
+  for (const char* family :
+       {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "lights"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());
