@@ -3,6 +3,7 @@
 #include "film/filter.h"
 #include "geometry/camera.h"
 #include "integrator/integrator.h"
+#include "medium/homogeneous.h"
 #include "noritest/noritest.h"
 #include "render/isa.h"
 #include "render/render.h"
@@ -69,6 +70,9 @@ Json describe_program() {
   json["filters"] = describe(filter_plugins());
   json["shapes"] = describe(shape_plugins());
   json["bsdfs"] = describe(bsdf_plugins());
+  json["textures"] = describe(texture_plugins());
+  json["media"] = describe(medium_plugins());
+  json["phases"] = describe(phase_plugins());
   json["lights"] = describe(light_plugins());
   json["tests"] = describe(test_plugins());
   return json;
@@ -83,7 +87,8 @@ void print(const Json& json) {
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
   for (const char* family :
-       {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights", "tests"}) {
+       {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "media", "phases", "lights",
+        "tests"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());

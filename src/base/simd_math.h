@@ -8,8 +8,10 @@ namespace etendue {
 
 // Found by overload for float (std) and by argument-dependent lookup for batches (xsimd).
 using std::abs;
+using std::floor;
 using std::sqrt;
 using xsimd::abs;
+using xsimd::floor;
 using xsimd::sqrt;
 
 inline float min(float a, float b) { return a < b ? a : b; }

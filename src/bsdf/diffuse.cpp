@@ -6,12 +6,13 @@ const Plugin diffuse_plugin{
     "bsdf",
     "diffuse",
     "Lambert's reflection: f = albedo / pi; black from behind.",
-    {{"albedo", Parameter::Type::color, "0.5", "", "Fraction of the light that is reflected"}},
+    {{"albedo", Parameter::Type::color, "0.5", "", "Fraction of the light that is reflected", false, true}},
     {}};
 
-Diffuse make_diffuse(const Object& description, std::vector<UnreadKey>& unread) {
+Diffuse make_diffuse(const Object& description, const std::filesystem::path& directory,
+                     std::vector<UnreadKey>& unread) {
   const Parameters parameters(description, diffuse_plugin, unread);
-  return {nonnegative_color(parameters, "albedo")};
+  return {read_color_texture(parameters, "albedo", directory, unread)};
 }
 
 }  // namespace etendue

@@ -4,7 +4,7 @@
 #include "base/color.h"
 #include "base/warp.h"
 #include "bsdf/bsdf_sample.h"
-#include "scenefile/parameters.h"
+#include "texture/texture.h"
 
 namespace etendue {
 
@@ -29,16 +29,17 @@ struct DiffuseAt {
 };
 
 struct Diffuse {
-  Colorf albedo{0.5f, 0.5f, 0.5f};
+  ColorTexture albedo = Colorf{0.5f, 0.5f, 0.5f};
 
-  bool has_texture() const { return false; }
+  bool has_texture() const { return !is_uniform(albedo); }
   template <class F>
-  DiffuseAt<F> at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {
-    return {{F(albedo.r), F(albedo.g), F(albedo.b)}};
+  DiffuseAt<F> at(const Vec2<F>& uv, const Mask<F>& lanes) const {
+    return {color_at(albedo, uv, lanes)};
   }
 };
 
 extern const Plugin diffuse_plugin;
-Diffuse make_diffuse(const Object& description, std::vector<UnreadKey>& unread);
+Diffuse make_diffuse(const Object& description, const std::filesystem::path& directory,
+                     std::vector<UnreadKey>& unread);
 
 }  // namespace etendue

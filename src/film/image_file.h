@@ -40,6 +40,13 @@ void write_png(const std::filesystem::path& file, const Image& image);
 /// chroma-subsampled files among it; it never allocates more than a file of that many bytes can hold.
 Image read_exr(const std::filesystem::path& file);
 
+/// How the numbers of a PNG are meant: encoded light (IEC 61966-2-1), or plain numbers from 0 to 1.
+enum class PngEncoding { srgb, linear };
+/// R, G and B as linear values from 0 to 1, from any PNG of up to 2^28 pixels: grey, palette or colour, up to
+/// 16 bits a channel. Alpha, colour profiles and gamma chunks are left aside. Throws InputError for what
+/// cannot be read.
+Image read_png(const std::filesystem::path& file, PngEncoding encoding);
+
 /// Throws InputError unless the file's folder exists and can be written and its ending is .exr or .png:
 /// asked before a render, not after.
 void check_writable(const std::filesystem::path& file);

@@ -23,7 +23,7 @@ struct Parameter {
 
 /// A plugin of one family, as the scene file and `etendue info` name it.
 struct Plugin {
-  std::string family;  ///< integrator, sampler, camera, filter, shape, bsdf, light.
+  std::string family;  ///< integrator, sampler, camera, filter, shape, bsdf, texture, light.
   std::string name;
   std::string meaning;
   std::vector<Parameter> parameters;

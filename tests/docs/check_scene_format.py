@@ -14,7 +14,8 @@ import re
 import subprocess
 import sys
 
-FAMILIES = ["integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights", "tests"]
+FAMILIES = ["integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "media", "phases", "lights",
+            "tests"]
 HEAD = ["parameter", "type", "default", "unit", "meaning"]
 
 
@@ -135,7 +136,7 @@ PLANTED = [
     ("a wrong unit", PAGE.replace("deg", "rad"), INFO, "unit 'rad'"),
     ("a unit missing", PAGE.replace("deg", ""), INFO, "unit ''"),
     ("a wrong type", PAGE.replace("| float", "| integer"), INFO, "type 'integer'"),
-    ("a family unknown", PAGE, INFO | {"textures": [{"name": "a", "parameters": []}]}, "textures: a family"),
+    ("a family unknown", PAGE, INFO | {"phases": [{"name": "a", "parameters": []}]}, "phases: a family"),
 ]
 
 

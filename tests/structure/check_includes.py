@@ -18,8 +18,8 @@ import sys
 import tempfile
 
 # scenefile comes early because the plugins of every family state their parameters through it.
-FOLDERS = ["base", "stats", "scenefile", "sampler", "film", "geometry", "bsdf", "medium", "light", "lightsampler",
-           "scene", "integrator", "render", "noritest"]
+FOLDERS = ["base", "stats", "scenefile", "sampler", "film", "geometry", "texture", "bsdf", "medium", "light",
+           "lightsampler", "scene", "integrator", "render", "noritest"]
 TOPS = ["src", "apps", "tests", "bench"]
 MAX_HEADER_LINES = 150
 XSIMD_HOME = "src/base/simd.h"

@@ -5,6 +5,7 @@
 // swaps its arguments for integers; sincos_turns is off by 1e-6.
 #include "wide/wide_functions.h"
 
+#include "film/image_file.h"
 #include "render/isa.h"
 #include "test_scene.h"
 
@@ -107,6 +108,18 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   all["Phong::eval_"] = all["Phong::pdf_solid_angle_"] = {{real(-1, 1)}, 20, 5, 2};
   // As square_to_power_cosine, for n = 30, then turned.
   all["Phong::sample_"] = {{unit()}, 40, 1, 1};
+  // Lobes of roughness 0.3, some 3 high: an ulp of the half vector is 20 of the lobe, and more where wo and
+  // wi nearly cancel or the facet is seen at a grazing angle.
+  for (const std::string name : {"Microfacet", "RoughConductor ggx", "RoughConductor beckmann",
+                                 "RoughDielectric ggx", "RoughDielectric beckmann"}) {
+    all[name + "::eval_"] = all[name + "::pdf_solid_angle_"] = {{real(-1, 1)}, 300, 5, 2};
+    all[name + "::sample_"] = {{unit()}, 300, 1, 1};
+  }
+  all["Dielectric::sample_"] = {{unit()}, 10, 1, 1};
+  // Not at the edges of squares, where rounding decides.
+  all["textures"] = {{real(-3, 3)}, 200, 1};
+  all["inverse_erf"] = {{real(-1, 1, {0, 0x1.fffffep-1f})}, 8};
+  all["split_unit"] = {{unit()}};
   // Coordinates of a few metres; normals are sums of products. A sphere's normal has the square root of what
   // is left of 1 - cos^2.
   all["Lights::sample_position"] = {
@@ -124,9 +137,32 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   return all;
 }
 
-/// At least 3 lights, of all kinds; materials 0 diffuse, 1 glossy; geometry 0 is smooth.
+std::string bsdf_xml(const std::string& type, const std::string& inside) {
+  return fmt::format("<bsdf type=\"{}\"><float name=\"alpha\" value=\"0.3\"/>{}</bsdf>", type, inside);
+}
+std::string textured_xml(const std::string& texture) {
+  return fmt::format("<bsdf type=\"diffuse\">{}</bsdf>", texture);
+}
+
+/// At least 3 lights, of all kinds; materials 0 diffuse, 1 glossy, 2 a light's, then all others in the order
+/// of the table, then three textures; geometry 0 is smooth.
 LoadedScene test_scene(std::uint32_t lights) {
+  const TemporaryFolder folder;
+  const std::filesystem::path image = folder.path() / "texture.exr";
+  write_exr(image,
+            {2, 2, {{"R", {0.1f, 0.9f, 0.4f, 0.7f}}, {"G", {1, 0, 0, 1}}, {"B", {0, 0.2f, 0.6f, 1}}}, {}});
+  const std::string ggx = "<string name=\"distribution\" value=\"ggx\"/>";
   std::string more;
+  for (const std::string& bsdf :
+       {bsdf_xml("microfacet", ""), bsdf_xml("roughconductor", ggx), bsdf_xml("roughconductor", ""),
+        bsdf_xml("roughdielectric", ggx), bsdf_xml("roughdielectric", ""),
+        std::string("<bsdf type=\"dielectric\"/>"),
+        textured_xml("<texture type=\"checkerboard_color\" name=\"albedo\"/>"),
+        textured_xml("<texture type=\"uvtexture\" name=\"albedo\"/>"),
+        textured_xml("<texture type=\"imagetexture\" name=\"albedo\"><string name=\"filename\" "
+                     "value=\"" +
+                     image.string() + "\"/></texture>")})
+    more += sphere_xml({9, 9, 9}, 0.1, bsdf);
   for (std::uint32_t i = 3; i < lights; ++i)
     more += rectangle_xml({0.3 * i, 0.1 * i, 3 + 0.1 * i}, {0.5, 0, 0}, {0, -0.5, 0.1}, light_xml(1 + i));
 

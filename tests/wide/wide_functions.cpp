@@ -1,7 +1,9 @@
 // The table of wide functions; built once for each instruction set, like the kernels.
 #include "wide/wide_functions.h"
 
+#include "base/error_function.h"
 #include "base/frame.h"
+#include "base/split_unit.h"
 #include "base/warp.h"
 #include "integrator/light_sampling.h"
 #include "integrator/path_rules.h"
@@ -162,6 +164,14 @@ void bsdf_sample(const Scene& scene, Packet& p) {
   visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.sample_(wo, u_bsdf).wi_local); });
 }
 
+void textures(const Scene& scene, Packet& p) {
+  const Vec2<F> uv = p.square();
+  for (const Bsdf& material : scene.materials)
+    if (has_texture(material)) p.give(std::get<Diffuse>(material).at(uv, every_lane()).albedo);
+}
+void inverse_error_function(const Scene&, Packet& p) { p.give(inverse_erf(p.real())); }
+void split(const Scene&, Packet& p) { p.give(split_unit(p.real())); }
+
 void light_position(const Scene& scene, Packet& p) {
   const I light = as_int(p.word());
   const Vec3<F> reference = p.vec();
@@ -225,6 +235,25 @@ constexpr WideFunction functions[]{
     {"Phong::eval_", 6, 3, Words::floats, run<bsdf_eval<1>>},
     {"Phong::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<1>>},
     {"Phong::sample_", 5, 3, Words::floats, run<bsdf_sample<1>>},
+    {"Microfacet::eval_", 6, 3, Words::floats, run<bsdf_eval<3>>},
+    {"Microfacet::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<3>>},
+    {"Microfacet::sample_", 5, 3, Words::floats, run<bsdf_sample<3>>},
+    {"RoughConductor ggx::eval_", 6, 3, Words::floats, run<bsdf_eval<4>>},
+    {"RoughConductor ggx::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<4>>},
+    {"RoughConductor ggx::sample_", 5, 3, Words::floats, run<bsdf_sample<4>>},
+    {"RoughConductor beckmann::eval_", 6, 3, Words::floats, run<bsdf_eval<5>>},
+    {"RoughConductor beckmann::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<5>>},
+    {"RoughConductor beckmann::sample_", 5, 3, Words::floats, run<bsdf_sample<5>>},
+    {"RoughDielectric ggx::eval_", 6, 3, Words::floats, run<bsdf_eval<6>>},
+    {"RoughDielectric ggx::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<6>>},
+    {"RoughDielectric ggx::sample_", 5, 3, Words::floats, run<bsdf_sample<6>>},
+    {"RoughDielectric beckmann::eval_", 6, 3, Words::floats, run<bsdf_eval<7>>},
+    {"RoughDielectric beckmann::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<7>>},
+    {"RoughDielectric beckmann::sample_", 5, 3, Words::floats, run<bsdf_sample<7>>},
+    {"Dielectric::sample_", 5, 3, Words::floats, run<bsdf_sample<8>>},
+    {"textures", 2, 9, Words::floats, run<textures>},
+    {"inverse_erf", 1, 1, Words::floats, run<inverse_error_function>},
+    {"split_unit", 1, 2, Words::integers, run<split>},
     {"Lights::sample_position", 6, 9, Words::floats, run<light_position>},
     {"Lights::pdf_area", 6, 2, Words::floats, run<light_pdf>},
     {"sample_lights", 5, 7, Words::floats, run<lights_sample>},

@@ -1,0 +1,214 @@
+// Textures: what they give where, and the images they come from.
+//
+// Seen to fail when: PLANTED.
+#include "texture/texture.h"
+
+#include "bsdf/bsdf.h"
+#include "film/image_file.h"
+#include "test_scene.h"
+
+#include <fstream>
+#include <functional>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+
+namespace etendue {
+namespace {
+
+using ::testing::HasSubstr;
+
+Colorf at(const ColorTexture& texture, float u, float v) { return color_at(texture, Vec2f{u, v}, true); }
+
+TEST(Texture, CheckerboardSquaresHaveTheirSizeAndAreShiftedByWholeOnes) {
+  const Colorf even{0.8f, 0.2f, 0.4f}, odd{0.2f, 0.55f, 0.1f};
+  const Checkerboard plain{even, odd, {0, 0}, {0.5f, 0.25f}};
+  EXPECT_EQ(at(plain, 0.1f, 0.1f), even);
+  EXPECT_EQ(at(plain, 0.6f, 0.1f), odd);
+  EXPECT_EQ(at(plain, 0.1f, 0.3f), odd);
+  EXPECT_EQ(at(plain, 0.6f, 0.3f), even);
+  EXPECT_EQ(at(plain, -0.1f, 0.1f), odd);
+  EXPECT_EQ(at(plain, -0.1f, -0.1f), even);
+  // u / scale - delta: 0.6 / 0.5 - 0.3 = 0.9 is in square 0, not 1 as (0.6 - 0.3) / 0.5 + 1 would be.
+  const Checkerboard shifted{even, odd, {0.3f, 0}, {0.5f, 0.25f}};
+  EXPECT_EQ(at(shifted, 0.6f, 0.1f), even);
+  EXPECT_EQ(at(shifted, 0.1f, 0.1f), odd);
+}
+
+TEST(Texture, CoordinatesAreModuloOneWithARipple) {
+  const Colorf flat = at(UvTexture{}, 3.25f, -0.5f);  // The ripple's sines are 0 here.
+  EXPECT_NEAR(flat.r, 0.25, 1e-6);
+  EXPECT_NEAR(flat.g, 0.5, 1e-6);
+  EXPECT_EQ(flat.b, 0.5f);
+  const double u = 0.27, v = 0.61, c = 16 * std::numbers::pi;
+  const Colorf there = at(UvTexture{}, float(u), float(v));
+  EXPECT_NEAR(there.r, u * (1 - 0.2 * std::sin(c * u) * std::sin(c * v)), 1e-5);
+  EXPECT_NEAR(there.g, v * (1 - 0.2 * std::cos(c * u) * std::sin(c * v)), 1e-5);
+}
+
+/// Two columns, three rows from the top; red tells the pixel: 0 1 / 2 3 / 4 5.
+void write_six_pixels(const std::filesystem::path& file) {
+  write_exr(file,
+            {2, 3, {{"R", {0, 1, 2, 3, 4, 5}}, {"G", {1, 1, 1, 1, 1, 1}}, {"B", {0, 0, 0, 0, 0, 0}}}, {}});
+}
+
+ColorTexture load(const std::string& inside,
+                  const std::function<void(const std::filesystem::path&)>& prepare) {
+  const TemporaryFolder folder;
+  prepare(folder.path());
+  std::ofstream(folder.path() / "scene.xml")
+      << "<scene><bsdf type=\"diffuse\"><texture type=\"imagetexture\" name=\"albedo\">" << inside
+      << "</texture></bsdf></scene>";
+  const SceneDesc scene = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
+  std::vector<UnreadKey> unread;
+  return std::get<Diffuse>(make_bsdf(scene.root.children.front(), scene.directory, unread)).albedo;
+}
+std::string file_xml(const std::string& name) {
+  return fmt::format("<string name=\"filename\" value=\"{}\"/>", name);
+}
+ColorTexture six_pixels(const std::string& more) {
+  return load(file_xml("a.exr") + more, [](const auto& folder) { write_six_pixels(folder / "a.exr"); });
+}
+
+TEST(Texture, ImagesStandUprightAndAreBilinearBetweenCentres) {
+  const ColorTexture image = six_pixels("");
+  EXPECT_FLOAT_EQ(at(image, 0.25f, 1 / 6.0f).r, 4);  // Lower left.
+  EXPECT_FLOAT_EQ(at(image, 0.75f, 1 / 6.0f).r, 5);
+  EXPECT_FLOAT_EQ(at(image, 0.25f, 5 / 6.0f).r, 0);  // Upper left.
+  EXPECT_FLOAT_EQ(at(image, 0.5f, 0.5f).r, 2.5f);
+  EXPECT_NEAR(at(image, 0.35f, 1 / 3.0f).r, 0.8 * 3 + 0.2 * 4, 1e-5);
+  EXPECT_FLOAT_EQ(at(image, 0.5f, 0.5f).g, 1);
+}
+
+TEST(Texture, ImagesWrapAsAsked) {
+  const std::string nearest = "<string name=\"interpolation\" value=\"nearest\"/>";
+  const auto wrap = [](const std::string& how) {
+    return fmt::format("<string name=\"wrap\" value=\"{}\"/>", how);
+  };
+  const ColorTexture repeat = six_pixels(nearest), mirror = six_pixels(nearest + wrap("mirror")),
+                     clamp = six_pixels(nearest + wrap("clamp"));
+  for (const auto& [u, v, repeated, mirrored, clamped] : {std::tuple{0.3f, 0.1f, 4, 4, 4},
+                                                          {1.3f, 0.1f, 4, 5, 5},
+                                                          {-0.3f, 0.1f, 5, 4, 4},
+                                                          {0.3f, 1.1f, 4, 0, 0},
+                                                          {0.3f, -0.1f, 0, 4, 4},
+                                                          {-1.3f, -2.1f, 5, 1, 4},
+                                                          {1e6f, 0.1f, 4, 4, 5}}) {
+    EXPECT_EQ(at(repeat, u, v).r, float(repeated)) << u << " " << v;
+    EXPECT_EQ(at(mirror, u, v).r, float(mirrored)) << u << " " << v;
+    EXPECT_EQ(at(clamp, u, v).r, float(clamped)) << u << " " << v;
+  }
+  // At the very seam, between the last and the first pixel.
+  EXPECT_FLOAT_EQ(at(six_pixels(""), 1, 1 / 6.0f).r, 4.5f);
+  EXPECT_FLOAT_EQ(at(six_pixels(wrap("clamp")), 1, 1 / 6.0f).r, 5);
+}
+
+/// A PNG of one row with these bytes.
+void write_row(const std::filesystem::path& file, int width, int bit_depth, int color_type,
+               std::vector<png_byte> row) {
+  std::FILE* stream = std::fopen(file.c_str(), "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, stream);
+  png_set_IHDR(png, info, png_uint_32(width), 1, bit_depth, color_type, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  const png_color palette[]{{255, 0, 0}, {0, 188, 0}};
+  if (color_type == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(png, info, palette, 2);
+  png_write_info(png, info);
+  png_write_row(png, row.data());
+  png_write_end(png, nullptr);
+  png_destroy_write_struct(&png, &info);
+  std::fclose(stream);
+}
+
+double linear(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+TEST(PngRead, EveryKindOfPixelIsDecoded) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.png";
+  const auto first = [&](PngEncoding encoding, std::size_t pixel) {
+    const Image image = read_png(file, encoding);
+    return Colorf{image.find("R")->values[pixel], image.find("G")->values[pixel],
+                  image.find("B")->values[pixel]};
+  };
+  write_row(file, 2, 8, PNG_COLOR_TYPE_RGB, {255, 188, 0, 1, 10, 11});
+  EXPECT_EQ(first(PngEncoding::srgb, 0), (Colorf{1, float(linear(188 / 255.0)), 0}));
+  EXPECT_EQ(first(PngEncoding::srgb, 1),
+            (Colorf{float(linear(1 / 255.0)), float(linear(10 / 255.0)), float(linear(11 / 255.0))}));
+  EXPECT_EQ(first(PngEncoding::linear, 0), (Colorf{1, float(188 / 255.0), 0}));
+  write_row(file, 1, 16, PNG_COLOR_TYPE_RGB_ALPHA, {0x12, 0x34, 0xff, 0xff, 0, 1, 0, 0});
+  EXPECT_EQ(first(PngEncoding::srgb, 0),
+            (Colorf{float(linear(0x1234 / 65535.0)), 1, float(linear(1 / 65535.0))}));
+  write_row(file, 1, 16, PNG_COLOR_TYPE_GRAY, {0x12, 0x34});
+  const float grey = float(0x1234 / 65535.0);
+  EXPECT_EQ(first(PngEncoding::linear, 0), (Colorf{grey, grey, grey}));
+  write_row(file, 8, 1, PNG_COLOR_TYPE_GRAY, {0b01000000});
+  EXPECT_EQ(first(PngEncoding::srgb, 0), (Colorf{0, 0, 0}));
+  EXPECT_EQ(first(PngEncoding::srgb, 1), (Colorf{1, 1, 1}));
+  write_row(file, 2, 8, PNG_COLOR_TYPE_PALETTE, {0, 1});
+  EXPECT_EQ(first(PngEncoding::srgb, 1), (Colorf{0, float(linear(188 / 255.0)), 0}));
+}
+
+TEST(PngRead, WhatIsWrittenIsReadAgain) {
+  const TemporaryFolder folder;
+  Image image{256, 1, {{"R", {}}, {"G", {}}, {"B", {}}}, {}};
+  for (int i = 0; i < 256; ++i)
+    for (Channel& channel : image.channels) channel.values.push_back(float(linear(i / 255.0)));
+  write_png(folder.path() / "a.png", image);
+  const Image again = read_png(folder.path() / "a.png", PngEncoding::srgb);
+  EXPECT_EQ(again.find("G")->values, image.channels[1].values);
+}
+
+std::string message_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(PngRead, BadFilesAreErrors) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.png";
+  const auto message = [&] { return message_of([&] { read_png(file, PngEncoding::srgb); }); };
+  EXPECT_THAT(message(), HasSubstr("there is no such file"));
+  std::ofstream(file) << "this is text";
+  EXPECT_THAT(message(), HasSubstr("a.png: cannot read this PNG image: Not a PNG file"));
+  write_row(file, 300, 8, PNG_COLOR_TYPE_RGB, std::vector<png_byte>(900, 77));
+  std::string bytes;
+  {
+    std::ifstream stream(file, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(stream), {});
+  }
+  for (std::size_t cut = 0; cut < bytes.size(); ++cut) {
+    std::ofstream(file, std::ios::binary) << bytes.substr(0, cut);
+    EXPECT_THAT(message(), HasSubstr("cannot read this PNG image")) << cut;
+  }
+  for (std::size_t i = 0; i < bytes.size(); ++i) {  // Must not crash; most are errors by their checksum.
+    std::string broken = bytes;
+    broken[i] = char(broken[i] ^ 0x55);
+    std::ofstream(file, std::ios::binary) << broken;
+    message();
+  }
+}
+
+TEST(Texture, BadOnesAreErrorsThatNameThem) {
+  const auto nothing = [](const std::filesystem::path&) {};
+  EXPECT_THAT(message_of([&] { load(file_xml("b.png"), nothing); }), HasSubstr("'b.png' is not there"));
+  EXPECT_THAT(message_of([&] { load("", nothing); }), HasSubstr("lacks 'filename'"));
+  EXPECT_THAT(message_of([&] { load(file_xml("scene.xml"), nothing); }), HasSubstr("ends in .exr or .png"));
+  EXPECT_THAT(message_of([&] { six_pixels("<string name=\"wrap\" value=\"repeated\"/>"); }),
+              HasSubstr("did you mean 'repeat'?"));
+  EXPECT_THAT(message_of([&] {
+                load(file_xml("a.exr"), [](const std::filesystem::path& folder) {
+                  write_exr(folder / "a.exr", {1, 1, {{"Y", {-1}}}, {}});
+                });
+              }),
+              HasSubstr("has -1 in pixel 0, 0"));
+}
+
+}  // namespace
+}  // namespace etendue
