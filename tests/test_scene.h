@@ -127,10 +127,12 @@ inline std::string box_obj(const Vec3d& center, double half, bool is_inward) {
 }
 
 /// The widest instruction set of this machine, all threads.
-inline RenderSettings render_settings(IntegratorKind kind, int samples_per_pixel, int replicates,
-                                      std::uint64_t seed, Combination heuristic = Combination::balance) {
+inline RenderSettings render_settings(std::string_view integrator, int samples_per_pixel, int replicates,
+                                      std::uint64_t seed, DirectLight heuristic = DirectLight::balance) {
   RenderSettings settings;
-  settings.integrator = {kind, heuristic};
+  settings.integrator = integrator_from_name(integrator);
+  if (needs_both_pdfs(settings.integrator.rules.direct_light))
+    settings.integrator.rules.direct_light = heuristic;
   settings.samples_per_pixel = samples_per_pixel;
   settings.replicates = replicates;
   settings.seed = seed;

@@ -6,8 +6,13 @@
 #pragma once
 
 #include "bsdf/bsdf_sample.h"
+#include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
+#include "bsdf/microfacet.h"
+#include "bsdf/mirror.h"
 #include "bsdf/phong.h"
+#include "bsdf/roughconductor.h"
+#include "bsdf/roughdielectric.h"
 #include "scenefile/parameters.h"
 
 #include <concepts>
@@ -40,8 +45,9 @@ concept Material = requires(const M& material, const Vec2<float>& uv, bool lanes
   { material.has_texture() } -> std::same_as<bool>;
 };
 
-using Bsdf = std::variant<Diffuse, Phong>;
-static_assert(Material<Diffuse> && Material<Phong>);
+using Bsdf = std::variant<Diffuse, Phong, Mirror, Dielectric, Microfacet, RoughConductor, RoughDielectric>;
+static_assert(Material<Diffuse> && Material<Phong> && Material<Mirror> && Material<Dielectric> &&
+              Material<Microfacet> && Material<RoughConductor> && Material<RoughDielectric>);
 
 const std::vector<Plugin>& bsdf_plugins();
 

@@ -1,29 +1,22 @@
 #include "geometry/obj_reader.h"
 
-#include "base/error.h"
+#include "geometry/mesh_builder.h"
+#include "geometry/mesh_text.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
-#include <limits>
 #include <memory>
+#include <span>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace etendue {
 namespace {
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-/// What one corner of a face names: indices from 0 into the file's v, vt, vn, or `none`.
-struct Corner {
-  std::uint32_t position, uv, normal;
-  friend bool operator==(const Corner&, const Corner&) = default;
-};
+constexpr std::uint32_t none = Corner::none;
 
 struct Face {
   std::size_t offset;  ///< Of the statement's first byte.
@@ -37,33 +30,11 @@ struct ZeroNormal {
 };
 
 /// The statements of a file, positions and normals already in world space.
-struct Statements {
-  std::vector<Vec3f> positions;
-  std::vector<Vec2f> uvs;
-  std::vector<Vec3f> normals;
+struct Statements : MeshParts {
   std::vector<ZeroNormal> zero_normals;
   std::vector<Face> faces;
   std::vector<Corner> corners;
 };
-
-std::shared_ptr<const SourceFile> read_source(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status))
-    throw InputError(fmt::format("{}: there is no such file", file.string()));
-  if (!std::filesystem::is_regular_file(status))
-    throw InputError(fmt::format("{}: not a regular file; expected an OBJ mesh", file.string()));
-  const auto size = std::filesystem::file_size(file, error);
-  auto source = std::make_shared<SourceFile>();
-  source->path = file.string();
-  std::ifstream stream(file, std::ios::binary);
-  if (!error && stream) {
-    source->text.resize(size);
-    stream.read(source->text.data(), static_cast<std::streamsize>(size));
-  }
-  if (error || !stream) throw InputError(fmt::format("{}: cannot be read; is it permitted?", file.string()));
-  return source;
-}
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
@@ -137,26 +108,6 @@ class Cursor {
   const char* end_;
 };
 
-/// Long garbage is cut, and bytes that are not printable ASCII are shown as '?'.
-std::string quoted(std::string_view token) {
-  constexpr std::size_t most = 40;
-  std::string shown(token.substr(0, most));
-  for (char& c : shown)
-    if (c < 0x20 || c > 0x7e) c = '?';
-  return fmt::format("'{}{}'", shown, token.size() > most ? "..." : "");
-}
-
-/// Unit, or zero where `n` has no direction that a double can hold.
-Vec3f unit_or_zero(const Vec3<double>& n) {
-  if (!std::isfinite(n.x) || !std::isfinite(n.y) || !std::isfinite(n.z)) return {0, 0, 0};
-  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  if (largest == 0) return {0, 0, 0};
-  const auto unit = normalize(n / largest);
-  return {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
-}
-
-Vec3<double> to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
 class Parser {
  public:
   Parser(std::shared_ptr<const SourceFile> source, const Transform& world_from_object)
@@ -197,24 +148,10 @@ class Parser {
 
   double read_number(std::string_view what, std::size_t count_before) {
     const auto start = cursor_.offset();
-    const bool has_two_signs = cursor_.accept('+') && cursor_.at() != cursor_.end() && *cursor_.at() == '-';
-    double value = 0;
-    const auto [stop, error] = std::from_chars(cursor_.at(), cursor_.end(), value);
-    cursor_.move_to(stop);
-    if (error == std::errc() && cursor_.at_token_end() && std::isfinite(value) && !has_two_signs)
-      return value;
-    cursor_ = Cursor(source_->text, start);
     const auto token = cursor_.take_token();
-    const auto which = label(what, count_before);
-    if (error == std::errc::result_out_of_range)
-      fail(start, token.size(), fmt::format("{}: {} is out of range", which, quoted(token)),
-           "expected a number that fits a float");
-    if (!std::isfinite(value))
-      fail(start, token.size(), fmt::format("{}: {} is not a finite number", which, quoted(token)),
-           "the program that wrote this file made an error; export the mesh anew, or repair the vertex by "
-           "hand");
-    fail(start, token.size(), fmt::format("{}: {} is not a number", which, quoted(token)),
-         "expected something like -1.5 or 2e-3");
+    if (const auto number = finite_number(token)) return *number;
+    const auto [problem, hint] = number_problem(token);
+    fail(start, token.size(), fmt::format("{}: {}", label(what, count_before), problem), hint);
   }
 
   float narrow(double value, std::size_t start, std::string_view what, std::size_t count_before) const {
@@ -269,9 +206,12 @@ class Parser {
     read_.normals.push_back(normal);
   }
 
+  /// What index 0 means: Cinema 4D writes it for a uv or normal that is not there.
+  enum class Zero { is_wrong, is_none };
+
   /// One index of a corner, where one is written; whether a positive one exists is known at the end of the
   /// file.
-  std::uint32_t read_index(std::size_t corner_start, std::size_t count_so_far) {
+  std::uint32_t read_index(std::size_t corner_start, std::size_t count_so_far, Zero zero) {
     std::int64_t written = 0;
     const auto start = cursor_.offset();
     const auto [stop, error] = std::from_chars(cursor_.at(), cursor_.end(), written);
@@ -285,6 +225,7 @@ class Parser {
     if (error == std::errc() && written < 0 && static_cast<std::uint64_t>(-(written + 1)) < count_so_far)
       return static_cast<std::uint32_t>(count_so_far - static_cast<std::uint64_t>(-(written + 1)) - 1);
     const auto shown = std::string_view(source_->text).substr(start, length);
+    if (error == std::errc() && written == 0 && zero == Zero::is_none) return none;
     if (error == std::errc() && written == 0)
       fail(start, length, "index 0", "indices count from 1, or back from -1");
     fail(start, length, fmt::format("index {} is out of range", quoted(shown)),
@@ -302,9 +243,9 @@ class Parser {
     for (cursor_.skip_blanks(); !cursor_.at_statement_end(); cursor_.skip_blanks()) {
       const auto start = cursor_.offset();
       Corner corner{none, none, none};
-      corner.position = read_index(start, read_.positions.size());
-      if (cursor_.accept('/')) corner.uv = read_index(start, read_.uvs.size());
-      if (cursor_.accept('/')) corner.normal = read_index(start, read_.normals.size());
+      corner.position = read_index(start, read_.positions.size(), Zero::is_wrong);
+      if (cursor_.accept('/')) corner.uv = read_index(start, read_.uvs.size(), Zero::is_none);
+      if (cursor_.accept('/')) corner.normal = read_index(start, read_.normals.size(), Zero::is_none);
       if (corner.position == none || !cursor_.at_token_end()) fail_at_corner(start);
       read_.corners.push_back(corner);
     }
@@ -322,82 +263,54 @@ class Parser {
   Statements read_;
 };
 
-/// Gives each distinct corner a vertex of the mesh. Most positions have one uv and one normal, so the first
-/// vertex of each position is found by index; only further ones go through a hash table (open addressing,
-/// linear probing).
-class VertexTable {
+/// Puts the faces together, once it is known what the file has.
+class Assembler {
  public:
-  explicit VertexTable(std::size_t position_count) : first_of_position_(position_count, none) {}
-
-  /// The corner's vertex, and its corner kept as number `size() - 1` where it is new.
-  std::uint32_t find_or_add(const Corner& corner) {
-    auto& first = first_of_position_[corner.position];
-    if (first == none) return first = add(corner);
-    if (corners_[first] == corner) return first;
-    if (2 * (split_count_ + 1) > slots_.size()) grow();
-    const auto slot = find_slot(corner);
-    if (slots_[slot] == none) {
-      slots_[slot] = add(corner);
-      ++split_count_;
-    }
-    return slots_[slot];
-  }
-
-  std::size_t size() const { return corners_.size(); }
-
- private:
-  std::uint32_t add(const Corner& corner) {
-    corners_.push_back(corner);
-    return static_cast<std::uint32_t>(corners_.size() - 1);
-  }
-
-  std::size_t find_slot(const Corner& c) const {
-    std::uint64_t hash = (std::uint64_t{c.position} << 32 | c.normal) * 0x9E3779B97F4A7C15u;
-    hash = (hash ^ hash >> 32 ^ c.uv) * 0xD6E8FEB86659FD93u;
-    auto slot = (hash ^ hash >> 32) & (slots_.size() - 1);
-    while (slots_[slot] != none && corners_[slots_[slot]] != c) slot = (slot + 1) & (slots_.size() - 1);
-    return slot;
-  }
-
-  void grow() {
-    const auto old =
-        std::exchange(slots_, std::vector<std::uint32_t>(std::max<std::size_t>(64, 2 * slots_.size()), none));
-    for (const auto vertex : old)
-      if (vertex != none) slots_[find_slot(corners_[vertex])] = vertex;
-  }
-
-  std::vector<Corner> corners_;
-  std::vector<std::uint32_t> first_of_position_;
-  std::vector<std::uint32_t> slots_;
-  std::size_t split_count_ = 0;
-};
-
-class MeshBuilder {
- public:
-  MeshBuilder(std::shared_ptr<const SourceFile> source, Statements read)
-      : source_(std::move(source)), read_(std::move(read)), vertices_(read_.positions.size()) {
-    for (const auto& corner : read_.corners) {
-      has_uvs_ |= corner.uv != none;
-      has_normals_ |= corner.normal != none;
-    }
-    mesh_.name = source_->path;
-  }
+  Assembler(std::shared_ptr<const SourceFile> source, Statements read)
+      : source_(std::move(source)), read_(std::move(read)) {}
 
   Mesh build() {
-    mesh_.indices.reserve(3 * (read_.corners.size() - 2 * read_.faces.size()));
-    mesh_.positions.reserve(read_.positions.size());
-    for (std::size_t f = 0; f < read_.faces.size(); ++f) add_face(f);
-    if (mesh_.indices.empty())
-      fail(read_.faces.front().offset, "no triangle has an area",
-           "the mesh, or the transform it is given, is flat; check its scale");
-    return std::move(mesh_);
+    bool has_uvs = false, has_normals = false;
+    for (const auto& corner : read_.corners) {
+      has_uvs |= corner.uv != none;
+      has_normals |= corner.normal != none;
+    }
+    for (std::size_t f = 0; f < read_.faces.size(); ++f) check_face(f);
+    const auto fail_at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
+      return error(read_.faces[face].offset, problem, hint);
+    };
+    const auto fail_at_normal = [this](std::size_t index, std::string_view problem, std::string_view hint) {
+      const auto zero = std::find_if(read_.zero_normals.begin(), read_.zero_normals.end(),
+                                     [&](const ZeroNormal& n) { return n.index == index; });
+      return error(zero->offset, fmt::format("normal {} {}", index + 1, problem), hint);
+    };
+    MeshBuilder builder(source_->path, MeshParts(std::move(static_cast<MeshParts&>(read_))), has_uvs,
+                        has_normals, {fail_at_face, fail_at_normal});
+    builder.reserve_triangles(read_.corners.size() - 2 * read_.faces.size());
+    for (std::size_t f = 0; f < read_.faces.size(); ++f)
+      builder.add_face(
+          f, std::span(read_.corners).subspan(first_corner(f), first_corner(f + 1) - first_corner(f)));
+    return std::move(builder).finish();
   }
 
  private:
-  [[noreturn]] void fail(std::size_t offset, std::string_view problem, std::string_view hint) const {
+  InputError error(std::size_t offset, std::string_view problem, std::string_view hint) const {
     auto end = source_->text.find_first_of("\r\n", offset);
     if (end == std::string::npos) end = source_->text.size();
-    throw InputError(Location{source_, offset, end - offset}, problem, hint);
+    return InputError(Location{source_, offset, end - offset}, problem, hint);
+  }
+
+  std::size_t first_corner(std::size_t face) const {
+    return face < read_.faces.size() ? read_.faces[face].first_corner : read_.corners.size();
+  }
+
+  void check_face(std::size_t face) const {
+    for (auto k = first_corner(face); k < first_corner(face + 1); ++k) {
+      const auto& corner = read_.corners[k];
+      check_range(face, k, corner.position, read_.positions.size(), "v");
+      check_range(face, k, corner.uv, read_.uvs.size(), "vt");
+      check_range(face, k, corner.normal, read_.normals.size(), "vn");
+    }
   }
 
   void check_range(std::size_t face, std::size_t corner, std::uint32_t index, std::size_t count,
@@ -416,99 +329,21 @@ class MeshBuilder {
                      fmt::format("the file has {} {} statement{}", count, statement, count == 1 ? "" : "s"));
   }
 
-  void add_face(std::size_t face) {
-    const auto first = read_.faces[face].first_corner;
-    const auto last =
-        face + 1 < read_.faces.size() ? read_.faces[face + 1].first_corner : read_.corners.size();
-    for (auto k = first; k < last; ++k) {
-      const auto corner = read_.corners[k];
-      check_range(face, k, corner.position, read_.positions.size(), "v");
-      check_range(face, k, corner.uv, read_.uvs.size(), "vt");
-      check_range(face, k, corner.normal, file_normal_count_, "vn");
-    }
-    const auto& c = read_.corners;
-    if (last - first == 4) {
-      add_triangle(face, {c[first], c[first + 1], c[first + 2]});
-      add_triangle(face, {c[first + 3], c[first], c[first + 2]});
-    } else {
-      for (auto k = first + 1; k + 1 < last; ++k) add_triangle(face, {c[first], c[k], c[k + 1]});
-    }
-  }
-
-  void add_triangle(std::size_t face, std::array<Corner, 3> corners) {
-    const auto p0 = to_double(read_.positions[corners[0].position]);
-    const auto p1 = to_double(read_.positions[corners[1].position]);
-    const auto p2 = to_double(read_.positions[corners[2].position]);
-    const auto double_area_normal = cross(p1 - p0, p2 - p0);
-    const double double_area_sq = length_sq(double_area_normal);
-    const double longest_sq = std::max({length_sq(p1 - p0), length_sq(p2 - p1), length_sq(p0 - p2)});
-    constexpr double rounding = 0x1p-21;
-    if (double_area_sq <= rounding * rounding * longest_sq * longest_sq ||
-        double_area_sq < std::numeric_limits<float>::min()) {
-      ++mesh_.dropped_triangles;
-      return;
-    }
-    if (double_area_sq > std::numeric_limits<float>::max())
-      fail(read_.faces[face].offset, "a triangle too large for single precision",
-           "scale the scene down, so that no area exceeds 1e18 square metres");
-    if (has_normals_) give_normals(corners, double_area_normal);
-    for (const auto& corner : corners) {
-      const auto vertex = vertices_.find_or_add(corner);
-      if (vertices_.size() > mesh_.positions.size()) add_vertex(corner);
-      mesh_.indices.push_back(vertex);
-    }
-  }
-
-  /// Flat where a corner lacks a normal; else turned to the side of the normals.
-  void give_normals(std::array<Corner, 3>& corners, const Vec3<double>& double_area_normal) {
-    if (std::any_of(corners.begin(), corners.end(), [](const Corner& c) { return c.normal == none; })) {
-      for (auto& corner : corners) corner.normal = static_cast<std::uint32_t>(read_.normals.size());
-      read_.normals.push_back(unit_or_zero(double_area_normal));
-      return;
-    }
-    Vec3<double> sum{0, 0, 0};
-    for (const auto& corner : corners) {
-      const auto& normal = read_.normals[corner.normal];
-      if (normal == Vec3f{0, 0, 0}) fail_at_zero_normal(corner.normal);
-      sum = sum + to_double(normal);
-    }
-    if (dot(double_area_normal, sum) < 0) std::swap(corners[1], corners[2]);
-  }
-
-  [[noreturn]] void fail_at_zero_normal(std::uint32_t index) const {
-    const auto zero = std::find_if(read_.zero_normals.begin(), read_.zero_normals.end(),
-                                   [&](const ZeroNormal& n) { return n.index == index; });
-    fail(zero->offset, fmt::format("normal {} has no direction", index + 1),
-         "the file or the transform makes it zero; export the mesh without normals, or write one that is not "
-         "zero");
-  }
-
-  void add_vertex(const Corner& corner) {
-    mesh_.positions.push_back(read_.positions[corner.position]);
-    if (has_normals_) mesh_.normals.push_back(read_.normals[corner.normal]);
-    if (has_uvs_) mesh_.uvs.push_back(corner.uv == none ? Vec2f{0, 0} : read_.uvs[corner.uv]);
-  }
-
   std::shared_ptr<const SourceFile> source_;
   Statements read_;
-  std::size_t file_normal_count_ = read_.normals.size();
-  VertexTable vertices_;
-  Mesh mesh_;
-  bool has_uvs_ = false;
-  bool has_normals_ = false;
 };
 
 }  // namespace
 
 Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_object) {
-  const auto source = read_source(file);
+  const auto source = read_mesh_file(file, "an OBJ mesh");
   if (source->text.empty())
     throw InputError(Location{source}, "the file is empty", "expected an OBJ mesh: v and f statements");
   auto read = Parser(source, world_from_object).parse();
   if (read.faces.empty())
     throw InputError(Location{source}, "no face",
                      "expected an OBJ mesh with f statements; points and lines alone cannot be rendered");
-  return MeshBuilder(source, std::move(read)).build();
+  return Assembler(source, std::move(read)).build();
 }
 
 }  // namespace etendue

@@ -1,7 +1,9 @@
 #include "scene/load_shape.h"
 
 #include "geometry/obj_reader.h"
+#include "geometry/ply_reader.h"
 #include "geometry/shapes.h"
+#include "scenefile/existing_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +24,13 @@ const Plugin obj_plugin{
     "A triangle mesh from a Wavefront OBJ file; written as <mesh type=\"obj\"> or <shape type=\"obj\">.",
     {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
     surface_children};
+const Plugin ply_plugin{
+    "shape",
+    "ply",
+    "A triangle mesh from a PLY file, ASCII or binary; written as <mesh type=\"ply\"> or <shape "
+    "type=\"ply\">.",
+    {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
+    surface_children};
 const Plugin sphere_plugin{
     "shape",
     "sphere",
@@ -33,11 +42,6 @@ const Plugin rectangle_plugin{"shape",
                               "The square [-1, 1] x [-1, 1] at z = 0, facing +z, under toWorld.",
                               {to_world},
                               surface_children};
-const Plugin area_plugin{"light",
-                         "area",
-                         "The shape shines from its front side, alike in all directions.",
-                         {{"radiance", Type::color, "1", "W/(m^2 sr)", "Emitted radiance"}},
-                         {}};
 
 Transform world_from_object(const Parameters& parameters) {
   if (!parameters.has("toWorld")) return {};
@@ -50,21 +54,6 @@ Transform world_from_object(const Parameters& parameters) {
 
 std::string label(const Object& object, const std::string& fallback) {
   return object.name.empty() ? fallback : object.name;
-}
-
-/// The object's file, found beside the scene.
-std::filesystem::path existing_file(const Parameters& parameters, const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / parameters.text("filename");
-  std::error_code error;
-  if (!std::filesystem::exists(file, error))
-    throw InputError(parameters.location("filename"),
-                     fmt::format("'{}' is not there", parameters.text("filename")),
-                     fmt::format("looked for {}; paths are relative to the scene file", file.string()));
-  if (std::filesystem::is_directory(file, error))
-    throw InputError(parameters.location("filename"),
-                     fmt::format("'{}' is a folder", parameters.text("filename")),
-                     "give the name of an OBJ file");
-  return file;
 }
 
 /// Throws where floats cannot tell the rectangle's corners apart, or its area is not finite.
@@ -109,31 +98,21 @@ Sphere make_sphere(const Parameters& parameters) {
 }  // namespace
 
 bool is_bsdf(const Object& object) { return object.family == "bsdf" || object.family == "brdf"; }
-bool is_light(const Object& object) { return object.family == "luminaire" || object.family == "emitter"; }
 
 const std::vector<Plugin>& shape_plugins() {
-  static const std::vector<Plugin> plugins{obj_plugin, sphere_plugin, rectangle_plugin};
+  static const std::vector<Plugin> plugins{obj_plugin, ply_plugin, sphere_plugin, rectangle_plugin};
   return plugins;
-}
-
-const std::vector<Plugin>& light_plugins() {
-  static const std::vector<Plugin> plugins{area_plugin};
-  return plugins;
-}
-
-Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& unread) {
-  if (description.type != area_plugin.name) throw unknown_plugin(description, light_plugins());
-  return nonnegative_color(Parameters(description, area_plugin, unread), "radiance");
 }
 
 void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
                         const std::optional<Colorf>& radiance, Geometry& geometry, Lights& lights,
                         std::vector<UnreadKey>& unread, std::vector<std::string>& warnings) {
   const std::string numbered = fmt::format("{} {}", object.type, geometry.count() + 1);
-  if (object.type == obj_plugin.name) {
-    const Parameters parameters(object, obj_plugin, unread);
-    const std::filesystem::path file = existing_file(parameters, directory);
-    const Mesh mesh = read_obj(file, world_from_object(parameters));
+  if (object.type == obj_plugin.name || object.type == ply_plugin.name) {
+    const bool is_obj = object.type == obj_plugin.name;
+    const Parameters parameters(object, is_obj ? obj_plugin : ply_plugin, unread);
+    const std::filesystem::path file = existing_file(parameters, "filename", directory, "a mesh file");
+    const Mesh mesh = (is_obj ? read_obj : read_ply)(file, world_from_object(parameters));
     const std::string name = label(object, file.stem().string());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(

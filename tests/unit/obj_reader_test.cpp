@@ -227,6 +227,12 @@ TEST(ObjReader, corners_without_uv_among_others_get_zero) {
   EXPECT_EQ(mesh.uvs[mesh.indices[5]], (Vec2f{0, 0}));
 }
 
+TEST(ObjReader, uv_or_normal_zero_means_none) {
+  const auto mesh = read_text(square + std::string("vt 1 1\nf 1/1/0 2/0/0 3/0\n"));
+  EXPECT_THAT(mesh.normals, IsEmpty());
+  EXPECT_THAT(mesh.uvs, ElementsAre(Vec2f{1, 1}, Vec2f{0, 0}, Vec2f{0, 0}));
+}
+
 TEST(ObjReader, triangles_without_area_are_dropped_and_counted) {
   const auto mesh =
       read_text(square + std::string("v 2 0 0\nf 1 2 3\nf 1 1 2\nf 1 2 5\nf 3 3 3\nf 1 2 3 3\n"));

@@ -4,7 +4,7 @@
 #include "base/frame.h"
 #include "base/warp.h"
 #include "integrator/light_sampling.h"
-#include "integrator/mis_weights.h"
+#include "integrator/path_rules.h"
 
 #include <iterator>
 
@@ -181,12 +181,12 @@ void lights_sample(const Scene& scene, Packet& p) {
   const Vec3<F> reference = p.vec();
   const LightSample<F> sample = sample_lights<F>(scene, reference, p.words(), every_lane());
   const Vec3<F> none{F(0), F(0), F(0)};
-  p.give(select(sample.is_facing, sample.wi, none));
-  p.give(select(sample.is_facing, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
-  p.give(select(sample.is_facing, sample.pdf_solid_angle(), F(0)));
+  p.give(select(sample.is_there, sample.wi, none));
+  p.give(select(sample.is_there, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
+  p.give(select(sample.is_there, sample.pdf_solid_angle(), F(0)));
 }
 
-template <Combination combination>
+template <DirectLight combination>
 void weight(const Scene&, Packet& p) {
   const F own = p.real(), other = p.real();
   p.give(mis_weight(combination, own, other));
@@ -228,8 +228,8 @@ constexpr WideFunction functions[]{
     {"Lights::sample_position", 6, 9, Words::floats, run<light_position>},
     {"Lights::pdf_area", 6, 2, Words::floats, run<light_pdf>},
     {"sample_lights", 5, 7, Words::floats, run<lights_sample>},
-    {"mis_weight balance", 2, 1, Words::floats, run<weight<Combination::balance>>},
-    {"mis_weight power", 2, 1, Words::floats, run<weight<Combination::power>>},
+    {"mis_weight balance", 2, 1, Words::floats, run<weight<DirectLight::balance>>},
+    {"mis_weight power", 2, 1, Words::floats, run<weight<DirectLight::power>>},
 };
 
 }  // namespace

@@ -1,0 +1,124 @@
+#include "geometry/mesh_builder.h"
+
+#include "geometry/mesh_text.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace etendue {
+namespace {
+
+Vec3<double> to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+std::uint32_t VertexTable::find_or_add(const Corner& corner) {
+  auto& first = first_of_position_[corner.position];
+  if (first == Corner::none) return first = add(corner);
+  if (corners_[first] == corner) return first;
+  if (2 * (split_count_ + 1) > slots_.size()) grow();
+  const auto slot = find_slot(corner);
+  if (slots_[slot] == Corner::none) {
+    slots_[slot] = add(corner);
+    ++split_count_;
+  }
+  return slots_[slot];
+}
+
+std::uint32_t VertexTable::add(const Corner& corner) {
+  corners_.push_back(corner);
+  return static_cast<std::uint32_t>(corners_.size() - 1);
+}
+
+std::size_t VertexTable::find_slot(const Corner& c) const {
+  std::uint64_t hash = (std::uint64_t{c.position} << 32 | c.normal) * 0x9E3779B97F4A7C15u;
+  hash = (hash ^ hash >> 32 ^ c.uv) * 0xD6E8FEB86659FD93u;
+  auto slot = (hash ^ hash >> 32) & (slots_.size() - 1);
+  while (slots_[slot] != Corner::none && corners_[slots_[slot]] != c) slot = (slot + 1) & (slots_.size() - 1);
+  return slot;
+}
+
+void VertexTable::grow() {
+  const auto old = std::exchange(
+      slots_, std::vector<std::uint32_t>(std::max<std::size_t>(64, 2 * slots_.size()), Corner::none));
+  for (const auto vertex : old)
+    if (vertex != Corner::none) slots_[find_slot(corners_[vertex])] = vertex;
+}
+
+MeshBuilder::MeshBuilder(std::string name, MeshParts parts, bool has_uvs, bool has_normals, Errors errors)
+    : parts_(std::move(parts)),
+      has_uvs_(has_uvs),
+      has_normals_(has_normals),
+      errors_(std::move(errors)),
+      vertices_(parts_.positions.size()) {
+  mesh_.name = std::move(name);
+  mesh_.positions.reserve(parts_.positions.size());
+}
+
+void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {
+  if (c.size() == 4) {
+    add_triangle(face, {c[0], c[1], c[2]});
+    add_triangle(face, {c[3], c[0], c[2]});
+  } else {
+    for (std::size_t k = 1; k + 1 < c.size(); ++k) add_triangle(face, {c[0], c[k], c[k + 1]});
+  }
+}
+
+Mesh MeshBuilder::finish() && {
+  if (mesh_.indices.empty())
+    throw errors_.at_face(0, "no triangle has an area",
+                          "the mesh, or the transform it is given, is flat; check its scale");
+  return std::move(mesh_);
+}
+
+void MeshBuilder::add_triangle(std::size_t face, std::array<Corner, 3> corners) {
+  const auto p0 = to_double(parts_.positions[corners[0].position]);
+  const auto p1 = to_double(parts_.positions[corners[1].position]);
+  const auto p2 = to_double(parts_.positions[corners[2].position]);
+  const auto double_area_normal = cross(p1 - p0, p2 - p0);
+  const double double_area_sq = length_sq(double_area_normal);
+  const double longest_sq = std::max({length_sq(p1 - p0), length_sq(p2 - p1), length_sq(p0 - p2)});
+  constexpr double rounding = 0x1p-21;
+  if (double_area_sq <= rounding * rounding * longest_sq * longest_sq ||
+      double_area_sq < std::numeric_limits<float>::min()) {
+    ++mesh_.dropped_triangles;
+    return;
+  }
+  if (double_area_sq > std::numeric_limits<float>::max())
+    throw errors_.at_face(face, "a triangle too large for single precision",
+                          "scale the scene down, so that no area exceeds 1e18 square metres");
+  if (has_normals_) give_normals(corners, double_area_normal);
+  for (const auto& corner : corners) {
+    const auto vertex = vertices_.find_or_add(corner);
+    if (vertices_.size() > mesh_.positions.size()) add_vertex(corner);
+    mesh_.indices.push_back(vertex);
+  }
+}
+
+/// Flat where a corner lacks a normal; else turned to the side of the normals.
+void MeshBuilder::give_normals(std::array<Corner, 3>& corners, const Vec3<double>& double_area_normal) {
+  if (std::any_of(corners.begin(), corners.end(), [](const Corner& c) { return c.normal == Corner::none; })) {
+    for (auto& corner : corners) corner.normal = static_cast<std::uint32_t>(parts_.normals.size());
+    parts_.normals.push_back(unit_or_zero(double_area_normal));
+    return;
+  }
+  Vec3<double> sum{0, 0, 0};
+  for (const auto& corner : corners) {
+    const auto& normal = parts_.normals[corner.normal];
+    if (normal == Vec3f{0, 0, 0})
+      throw errors_.at_normal(
+          corner.normal, "has no direction",
+          "the file or the transform makes it zero; export the mesh without normals, or write one that is "
+          "not zero");
+    sum = sum + to_double(normal);
+  }
+  if (dot(double_area_normal, sum) < 0) std::swap(corners[1], corners[2]);
+}
+
+void MeshBuilder::add_vertex(const Corner& corner) {
+  mesh_.positions.push_back(parts_.positions[corner.position]);
+  if (has_normals_) mesh_.normals.push_back(parts_.normals[corner.normal]);
+  if (has_uvs_) mesh_.uvs.push_back(corner.uv == Corner::none ? Vec2f{0, 0} : parts_.uvs[corner.uv]);
+}
+
+}  // namespace etendue
