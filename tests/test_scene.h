@@ -60,8 +60,8 @@ inline std::string camera_xml(const Vec3d& origin, const Vec3d& target, double f
       "value=\"-1,1,1\"/>"
       "<lookat origin=\"{}\" target=\"{}\" up=\"{}\"/></transform><float name=\"fov\" value=\"{}\"/>"
       "<integer name=\"width\" value=\"{}\"/><integer name=\"height\" value=\"{}\"/><rfilter "
-      "type=\"box\"/></camera>\n",
-      sampler, text_of(origin), text_of(target), text_of(up), fov_deg, side_px, side_px);
+      "type=\"box\"/>{}</camera>\n",
+      sampler, text_of(origin), text_of(target), text_of(up), fov_deg, side_px, side_px, more);
 }
 
 inline std::string light_xml(double radiance) {

@@ -1,5 +1,7 @@
 #include "integrator/integrator.h"
 
+#include "integrator/unlit.h"
+
 #include <array>
 #include <fmt/format.h>
 #include <optional>
@@ -125,10 +127,15 @@ Plugin plugin(std::string name, std::string meaning, std::vector<Parameter> para
   return {"integrator", std::move(name), std::move(meaning), std::move(parameters), {}};
 }
 
+std::vector<Plugin> with_unlit(std::vector<Plugin> plugins) {
+  plugins.insert(plugins.end(), unlit_plugins().begin(), unlit_plugins().end());
+  return plugins;
+}
+
 }  // namespace
 
 const std::vector<Plugin>& integrator_plugins() {
-  static const std::vector<Plugin> plugins{
+  static const std::vector<Plugin> plugins = with_unlit({
       plugin("light", "Area sampling: each sample takes one point on one light."),
       plugin("area", "Another name of light."),
       plugin("direct_ems", "Another name of light."),
@@ -148,7 +155,7 @@ const std::vector<Plugin>& integrator_plugins() {
              "multiple importance sampling.",
              {heuristic_parameter}),
       plugin("mipath", "Another name of path_mis.", {heuristic_parameter}),
-  };
+  });
   return plugins;
 }
 
@@ -158,6 +165,7 @@ std::string_view heuristic_name(DirectLight direct_light) {
 
 IntegratorSettings make_integrator(const Object& description, Dialect dialect,
                                    std::vector<UnreadKey>& unread) {
+  if (is_unlit(description.type)) return make_unlit(description, unread);
   if (description.type == sampling_direct_plugin.name && dialect == Dialect::nori)
     return make_sampling_direct(description, unread);
   const Plugin* known = nullptr;
@@ -176,6 +184,7 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
 }
 
 IntegratorSettings integrator_from_name(std::string_view name) {
+  if (is_unlit(name)) return unlit_from_name(name);
   const Meaning* meaning = find(name);
   if (!meaning) throw unknown_plugin("integrator", name, integrator_plugins());
   return settings_of(*meaning);

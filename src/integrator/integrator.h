@@ -6,6 +6,7 @@
 #pragma once
 
 #include "integrator/path_rules.h"
+#include "integrator/unlit_rules.h"
 #include "scenefile/parameters.h"
 
 #include <string_view>
@@ -13,12 +14,14 @@
 
 namespace etendue {
 
-enum class IntegratorKind { path };
+enum class IntegratorKind { path, normals, visibility, material, simple };
 
 struct IntegratorSettings {
   std::string_view name = "light";  ///< Of those that integrator_from_name knows.
   IntegratorKind kind = IntegratorKind::path;
-  PathRules rules;  ///< Of kind path.
+  PathRules rules;               ///< Of kind path.
+  VisibilityRules visibility{};  ///< Of kind visibility.
+  SimpleLight simple{};          ///< Of kind simple.
 
   bool needs_lights() const { return kind == IntegratorKind::path; }
 };

@@ -2,7 +2,11 @@
 #pragma once
 
 #include "integrator/integrator.h"
+#include "integrator/material.h"
+#include "integrator/normals.h"
 #include "integrator/path.h"
+#include "integrator/simple.h"
+#include "integrator/visibility.h"
 
 namespace etendue {
 
@@ -14,6 +18,14 @@ void run_integrator(const IntegratorSettings& settings, const Scene& scene, Samp
       if (settings.rules.bsdf_samples > 1)
         return direct_light_by_several<F>(scene, block, settings.rules, is_reordering);
       return path<F>(scene, block, settings.rules, is_reordering);
+    case IntegratorKind::normals:
+      return normals<F>(scene, block);
+    case IntegratorKind::visibility:
+      return visibility<F>(scene, block, settings.visibility);
+    case IntegratorKind::material:
+      return material<F>(scene, block);
+    case IntegratorKind::simple:
+      return simple<F>(scene, block, settings.simple);
   }
 }
 

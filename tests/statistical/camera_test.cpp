@@ -162,15 +162,16 @@ TEST(Lens, RaysStartUniformlyOnItWhereverTheFilterPutThem) {
       const std::uint64_t stream = sample_stream(7, b, 0, i / 16);
       block->pixel_x[i] = b;
       block->pixel_y[i] = 0;
-      block->stream_lo[i] = std::uint32_t(stream);
-      block->stream_hi[i] = std::uint32_t(stream >> 32);
-      block->index[i] = std::uint32_t(i % 16);
+      block->path.stream_lo[i] = std::uint32_t(stream);
+      block->path.stream_hi[i] = std::uint32_t(stream >> 32);
+      block->path.index[i] = std::uint32_t(i % 16);
     }
     camera_rays<float>(loaded.scene, *block);
     for (int i = 0; i < block_capacity; ++i) {
-      const double x = block->camera_ray.origin.x[i] / 2, y = block->camera_ray.origin.y[i] / 2;
+      const double x = block->path.ray.origin.x[i] / 2, y = block->path.ray.origin.y[i] / 2;
       cells.add(x, y);
-      const double u_film = film_numbers<float>(loaded.scene, *block, i).x;
+      const double u_film =
+          to_unit_float(sample_bits<float>(loaded.scene, block->path, i, dimension::film).x);
       const double turns = std::atan2(y, x) / (2 * std::numbers::pi) + 0.5;
       ++joint[std::size_t(std::min(int(turns * 16), 15) * 16 + int(u_film * 16))];
     }
