@@ -4,7 +4,12 @@
 // Seen to fail when: the alias table's thresholds are all 2^31; what is left of u.y is not stretched back;
 // square_to_triangle does not fold; sin_max_sq has the radius unsquared; pdf_area of the sphere lacks the
 // cosine; the sine at its centre comes from the cosine (near receivers); the rectangle's pdf is 2 / area;
-// some lights are chosen more often.
+// some lights are chosen more often; a disk is not uniform, half as bright or wide, or its density 1 % off; a
+// point's power is over 2 pi, its distance left out; a spot's power is by the mean of its edges' cosines, or
+// it shines backwards; a direction is reversed or not turned; of a map, the seam is left out, phi runs the
+// other way, the rotation is transposed, sin(theta) is left out of weights or density, the caps are even in
+// theta, places in a cell are uniform, or the search for a cell is off; the choice's pmf is missing; a
+// segment ends within the scene.
 #include "light/light.h"
 
 #include "film/image_file.h"
@@ -355,6 +360,13 @@ TEST(Envmap, TexelsStandWhereTheConventionSays) {
     }
   EXPECT_NEAR((alone.lights.infinite_radiance<float>(0, {0, 0, 1}, true).g), rgb[1 + 3 * (width - 1)], 17)
       << "the zenith is z, and has the first row";
+  // Over the seam, half way from the last texel of the middle row to the first.
+  constexpr int middle = 3 * width * (height / 2);
+  const double theta = std::numbers::pi * (height / 2 + 0.5) / height;
+  const Vec3d seam = transform_vector(turn, {0, std::cos(theta), -std::sin(theta)});
+  EXPECT_NEAR(
+      (alone.lights.infinite_radiance<float>(0, {float(seam.x), float(seam.y), float(seam.z)}, true).r),
+      0.5 * (rgb[std::size_t(middle)] + rgb[std::size_t(middle + 3 * (width - 1))]), 1e-3);
 }
 
 TEST(Envmap, RadianceOverDensityIsNearlyConstantWhereTheMapIsSmooth) {
@@ -559,6 +571,9 @@ TEST(LightSample, OfAGivenLightHasNoProbabilityInIt) {
   const LoadedScene loaded =
       scene_with(R"(<luminaire type="constant"><color name="radiance" value="2"/></luminaire>
     <luminaire type="constant"><color name="radiance" value="5"/></luminaire>)");
+  RandomBits random(21);
+  const LightSample<float> chosen = sample_lights<float>(loaded.scene, {0, 0, 0}, random.square(), true);
+  EXPECT_NEAR(chosen.pdf_solid_angle() * 8 * std::numbers::pi, 1, 1e-6) << "here it is part of the density";
   for (const std::int32_t light : {0, 1}) {
     const LightChoice<float> choice{light, 12345u << 16, 1.0f};
     const LightSample<float> sample =
