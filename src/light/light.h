@@ -3,21 +3,14 @@
 // Lanes of a packet may hold different lights, so a kind of light is a table with one column a field, and its
 // functions take a lane-varying row. Two sorts: area lights (mesh, rectangle, sphere) have `sample_position`
 // and `pdf_area`; the others have `sample`, and those at infinity that a ray can meet also `radiance` and
-// `pdf_solid_angle`. To add a kind: write light/NAME_light.h, give it a member, a LightKind and a case here,
-// a line in scene/load_light.cpp, and add it to the chi-squared tests in tests/statistical/light_test.cpp.
+// `pdf_solid_angle`. To add a kind: write light/NAME_light.h, give it a LightKind, a member and a case in
+// light_tables.h, a line in scene/load_light.cpp, and add it to the chi-squared tests in
+// tests/statistical/light_test.cpp.
 #pragma once
 
 #include "base/color.h"
-#include "base/lookup_table.h"
-#include "light/directional_light.h"
-#include "light/distant_disk_light.h"
-#include "light/envmap_light.h"
 #include "light/light_sample.h"
-#include "light/mesh_light.h"
-#include "light/point_light.h"
-#include "light/rectangle_light.h"
-#include "light/sphere_light.h"
-#include "light/spot_light.h"
+#include "light/light_tables.h"
 
 #include <cstdint>
 #include <string>
@@ -26,23 +19,8 @@
 
 namespace etendue {
 
-enum class LightKind : std::int32_t {
-  mesh,
-  rectangle,
-  sphere,
-  point,
-  spot,
-  directional,
-  distant_disk,
-  envmap
-};
-
-constexpr bool is_area_light(LightKind kind) { return kind <= LightKind::sphere; }
-/// Met by rays that leave the scene.
-constexpr bool is_infinite_light(LightKind kind) { return kind >= LightKind::distant_disk; }
-
 /// All lights of a scene.
-class Lights {
+class Lights : public LightTables {
  public:
   /// \param strength radiance (W/(m^2 sr)) of area lights and disks, intensity (W/sr) of point and spot
   /// lights, irradiance (W/m^2) of directional ones, a factor of environment maps
@@ -59,15 +37,6 @@ class Lights {
   /// Whether shadow packets that aim at one piece of one light are best traced as one. The random choice of a
   /// light is uniform, so most lights are most rays.
   bool are_aimed_packets_coherent() const { return 2 * meshes.finely_built_count() <= count(); }
-
-  MeshLights meshes;
-  RectangleLights rectangles;
-  SphereLights spheres;
-  PointLights points;
-  SpotLights spots;
-  DirectionalLights directionals;
-  DistantDiskLights distant_disks;
-  EnvmapLights envmaps;
 
   /// What `add` was given; lanes outside of `m` may hold any light.
   template <class F>
@@ -93,7 +62,7 @@ class Lights {
     const Color<F> scale = strength<F>(light, m);
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       LightSample<F> sample = no_light_sample<F>();
-      if constexpr (is_area<decltype(table)>) {
+      if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>) {
         sample = light_sample_at<F>(table.template sample_position<F>(geometry, row, reference, u, lanes),
                                     light, scale, pmf, reference, lanes);
       } else {
@@ -117,7 +86,7 @@ class Lights {
       return meshes.sample_position<F>(geometry, select(m, light, Int<F>(0)), reference, u_light, m);
     LightPoint<F> point = no_light_point<F>();
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
-      if constexpr (is_area<decltype(table)>)
+      if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>)
         point =
             select(lanes, table.template sample_position<F>(geometry, row, reference, u_light, lanes), point);
     });
@@ -131,7 +100,7 @@ class Lights {
              const Mask<F>& m) const {
     F pdf(0);
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
-      if constexpr (is_area<decltype(table)>)
+      if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>)
         pdf = select(lanes, table.template pdf_area<F>(row, reference, position, ng), pdf);
     });
     return pdf;
@@ -161,43 +130,9 @@ class Lights {
   }
 
  private:
-  template <class Table>
-  static constexpr bool is_area = std::is_same_v<std::remove_cvref_t<Table>, MeshLights> ||
-                                  std::is_same_v<std::remove_cvref_t<Table>, RectangleLights> ||
-                                  std::is_same_v<std::remove_cvref_t<Table>, SphereLights>;
-
   /// Then a light's id is its row.
   bool meshes_only() const { return meshes.count() == count(); }
 
-  template <class F, class Function>
-  void for_each_kind(const Int<F>& light, const Mask<F>& m, Function&& f) const {
-    const Int<F> safe = select(m, light, Int<F>(0));
-    const Int<F> kind = kind_.at(safe);
-    const Int<F> row = row_.at(safe);
-    for_each_unique<F>(kind, m, [&](std::int32_t which, const Mask<F>& lanes) {
-      const Int<F> safe_row = select(lanes, row, Int<F>(0));
-      switch (LightKind(which)) {
-        case LightKind::mesh:
-          return f(meshes, safe_row, lanes);
-        case LightKind::rectangle:
-          return f(rectangles, safe_row, lanes);
-        case LightKind::sphere:
-          return f(spheres, safe_row, lanes);
-        case LightKind::point:
-          return f(points, safe_row, lanes);
-        case LightKind::spot:
-          return f(spots, safe_row, lanes);
-        case LightKind::directional:
-          return f(directionals, safe_row, lanes);
-        case LightKind::distant_disk:
-          return f(distant_disks, safe_row, lanes);
-        case LightKind::envmap:
-          return f(envmaps, safe_row, lanes);
-      }
-    });
-  }
-
-  LookupTable<std::int32_t> kind_, row_;   ///< Which table, and the row in it.
   LookupTable<float> red_, green_, blue_;  ///< Strength.
   std::vector<std::string> names_;
   std::vector<std::int32_t> infinite_;  ///< Ids of the lights that rays meet at infinity.

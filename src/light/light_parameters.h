@@ -9,10 +9,7 @@
 
 namespace etendue {
 
-/// toWorld, identity unless given; throws InputError where it cannot be inverted.
-Transform world_from_light(const Parameters& parameters);
-
-/// The same as a rotation, perhaps mirrored: directions keep their angles. A common scale and a translation
+/// toWorld as a rotation, perhaps mirrored: directions keep their angles. A common scale and a translation
 /// are left out; throws InputError where there is more than these.
 Transform rotation_from_light(const Parameters& parameters);
 

@@ -13,8 +13,10 @@
 #include <bit>
 #include <cmath>
 #include <dlfcn.h>
+#include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <random>
@@ -83,6 +85,7 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   // ones become 0, not denormal.
   all["pow_positive"] = {{real(0, 1, {0, 1, 0x1.fffffep-1f}), exponent}, 100, 1e-33};
   all["sincos_turns"] = {{unit()}, 4, 1};
+  all["atan2"] = {{real(-4, 4, {0, 1, -1})}, 4, 1};
   all["square_to_triangle"] = {{unit()}, 1};
   all["square_to_cosine_hemisphere"] = {{unit()}, 5, 1};
   all["cosine_hemisphere_pdf"] = {{real(-1, 1, {0, 1})}, 1};
@@ -133,8 +136,37 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
       {real(-4, 4), real(-4, 4), real(0, 1.2f), [](std::mt19937& random) { return std::uint32_t(random()); }},
       4000,
       10};
+  // Up to four lights of radiance 3; a texel of the map is an ulp of the angle times its width wide.
+  all["environment"] = {{}, 200, 3, 1};
   all["mis_weight balance"] = all["mis_weight power"] = {{magnitude(-6, 6), magnitude(-6, 6, {0})}, 4};
   return all;
+}
+
+/// Six lights that are no surfaces, two of each of the sorts: points, directions, all around.
+const std::string other_lights =
+    R"(<luminaire type="point"><point name="position" value="1,-2,3"/></luminaire>
+    <luminaire type="spot"><float name="cutoffAngle" value="70"/><transform name="toWorld">
+      <lookat origin="-1,2,4" target="0,0,0" up="0,1,0"/></transform></luminaire>
+    <luminaire type="directional"><vector name="direction" value="1,2,-3"/></luminaire>
+    <luminaire type="constant"/>
+    <luminaire type="distantdisk"><float name="thetaA" value="33"/><transform name="toWorld">
+      <rotate axis="1,2,3" angle="50"/></transform></luminaire>
+    <luminaire type="envmap"><string name="filename" value="map.exr"/><transform name="toWorld">
+      <rotate axis="1,0,2" angle="40"/></transform></luminaire>)";
+
+/// A smooth map with a dark side.
+SceneFile map_file() {
+  constexpr int width = 37, height = 20;
+  Image image{width, height, {{"R", {}}, {"G", {}}, {"B", {}}}, {}};
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        image.channels[k].values.push_back(
+            std::max(0.0f, std::sin(0.17f * float(i)) + 0.5f * std::cos(0.3f * float(j) + float(k))));
+  const TemporaryFolder folder;
+  write_exr(folder.path() / "map.exr", image);
+  std::ifstream stream(folder.path() / "map.exr", std::ios::binary);
+  return {"map.exr", {std::istreambuf_iterator<char>(stream), {}}};
 }
 
 std::string bsdf_xml(const std::string& type, const std::string& inside) {
@@ -144,15 +176,16 @@ std::string textured_xml(const std::string& texture) {
   return fmt::format("<bsdf type=\"diffuse\">{}</bsdf>", texture);
 }
 
-/// At least 3 lights, of all kinds; materials 0 diffuse, 1 glossy, 2 a light's, then all others in the order
+/// At least 3 area lights of all kinds and, with more than 8, also other_lights; materials 0 diffuse, 1 glossy, 2 a light's, then all others in the order
 /// of the table, then three textures; geometry 0 is smooth.
 LoadedScene test_scene(std::uint32_t lights) {
+  constexpr std::uint32_t few = 8, others = 6;
   const TemporaryFolder folder;
   const std::filesystem::path image = folder.path() / "texture.exr";
   write_exr(image,
             {2, 2, {{"R", {0.1f, 0.9f, 0.4f, 0.7f}}, {"G", {1, 0, 0, 1}}, {"B", {0, 0.2f, 0.6f, 1}}}, {}});
   const std::string ggx = "<string name=\"distribution\" value=\"ggx\"/>";
-  std::string more;
+  std::string more = lights > few ? other_lights : "";
   for (const std::string& bsdf :
        {bsdf_xml("microfacet", ""), bsdf_xml("roughconductor", ggx), bsdf_xml("roughconductor", ""),
         bsdf_xml("roughdielectric", ggx), bsdf_xml("roughdielectric", ""),
@@ -163,7 +196,7 @@ LoadedScene test_scene(std::uint32_t lights) {
                      "value=\"" +
                      image.string() + "\"/></texture>")})
     more += sphere_xml({9, 9, 9}, 0.1, bsdf);
-  for (std::uint32_t i = 3; i < lights; ++i)
+  for (std::uint32_t i = 3 + (lights > few ? others : 0); i < lights; ++i)
     more += rectangle_xml({0.3 * i, 0.1 * i, 3 + 0.1 * i}, {0.5, 0, 0}, {0, -0.5, 0.1}, light_xml(1 + i));
 
   const std::string lens =
@@ -178,7 +211,7 @@ LoadedScene test_scene(std::uint32_t lights) {
           mesh_xml("octahedron.obj", diffuse_xml(0.6) + light_xml(3)) +
           rectangle_xml({0, 0, 4}, {1, 0.2, 0}, {0, -1, 0.3}, phong_xml(0.3, 0.5, 30) + light_xml(2)) +
           sphere_xml({2, 1, 3}, 0.6, light_xml(5)) + more,
-      {{"octahedron.obj", octahedron}});
+      {{"octahedron.obj", octahedron}, map_file()});
 }
 
 constexpr int count = 1 << 14;

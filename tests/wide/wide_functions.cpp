@@ -81,6 +81,10 @@ void word_less(const Scene&, Packet& p) {
 }
 void word_hash(const Scene&, Packet& p) { p.give(hash32(p.word())); }
 void unit_float(const Scene&, Packet& p) { p.give(to_unit_float(p.word())); }
+void angle_of(const Scene&, Packet& p) {
+  const F y = p.real(), x = p.real();
+  p.give(etendue::atan2(y, x));
+}
 void truncation(const Scene&, Packet& p) { p.give(as_uint(to_int(p.real()))); }
 
 void exponential(const Scene&, Packet& p) { p.give(etendue::exp(p.real())); }
@@ -196,6 +200,17 @@ void lights_sample(const Scene& scene, Packet& p) {
   p.give(select(sample.is_there, sample.pdf_solid_angle(), F(0)));
 }
 
+void environment(const Scene& scene, Packet& p) {
+  const Vec3<F> direction = p.vec();
+  Color<F> radiance{F(0), F(0), F(0)};
+  F pdf(0);
+  for (std::int32_t k = 0; k < scene.lights.infinite_count(); ++k) {
+    radiance = radiance + environment_radiance<F>(scene, k, direction, every_lane());
+    pdf = pdf + environment_pdf_solid_angle<F>(scene, k, direction, every_lane());
+  }
+  p.give(radiance), p.give(pdf);
+}
+
 template <DirectLight combination>
 void weight(const Scene&, Packet& p) {
   const F own = p.real(), other = p.real();
@@ -214,6 +229,7 @@ constexpr WideFunction functions[]{
     {"log", 1, 1, Words::floats, run<logarithm>},
     {"pow_positive", 2, 1, Words::floats, run<power>},
     {"sincos_turns", 1, 2, Words::floats, run<sine_and_cosine>},
+    {"atan2", 2, 1, Words::floats, run<angle_of>},
     {"square_to_triangle", 2, 2, Words::floats, run<triangle>},
     {"square_to_cosine_hemisphere", 2, 3, Words::floats, run<cosine_hemisphere>},
     {"cosine_hemisphere_pdf", 1, 1, Words::floats, run<cosine_hemisphere_pdf>},
@@ -257,6 +273,7 @@ constexpr WideFunction functions[]{
     {"Lights::sample_position", 6, 9, Words::floats, run<light_position>},
     {"Lights::pdf_area", 6, 2, Words::floats, run<light_pdf>},
     {"sample_lights", 5, 7, Words::floats, run<lights_sample>},
+    {"environment", 3, 4, Words::floats, run<environment>},
     {"mis_weight balance", 2, 1, Words::floats, run<weight<DirectLight::balance>>},
     {"mis_weight power", 2, 1, Words::floats, run<weight<DirectLight::power>>},
 };
