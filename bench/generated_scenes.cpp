@@ -93,8 +93,14 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
   camera.at_film_origin = forward - right * 0.6f + up * 0.4f;
 
   RayCaster rays(geometry);
-  return {camera,    PixelFilter::box(), std::move(geometry), std::move(rays),
-          materials, std::move(lights),  SamplerKind::sobol};
+  return {.camera = camera,
+          .filter = PixelFilter::box(),
+          .geometry = std::move(geometry),
+          .rays = std::move(rays),
+          .materials = materials,
+          .lights = std::move(lights),
+          .medium = std::nullopt,
+          .sampler = SamplerKind::sobol};
 }
 
 }  // namespace etendue::bench

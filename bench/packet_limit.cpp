@@ -4,7 +4,7 @@
 // packets of the same width and in sample order. fraction_of_limit = bare time / render time.
 
 #include "generated_scenes.h"
-#include "integrator/surface_point.h"
+#include "integrator/vertex.h"
 #include "render/kernel.h"
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,8 @@ double thread_seconds() {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-/// The rays of a tile, in sample order.
+/// The rays that arrive at one kind of vertices of a tile, and the shadow rays that leave there, in the order
+/// of samples.
 struct Recording {
   struct Vec3s {
     std::vector<float> x, y, z;
@@ -42,18 +43,22 @@ struct Recording {
   Vec3s origin, direction, shadow_origin, shadow_direction;
   std::vector<float> t_near, t_far;
   std::vector<std::int32_t> is_active, shadow_order;
+  std::int64_t rays = 0, shadow_rays = 0;
 
   void append(const SampleBlock& block) {
-    const int count = block.padded_count;
+    const PathColumns& path = block.path;
+    const int count = path.padded_count;
     for (int i = 0; i < count; ++i)
-      shadow_order.push_back(
-          block.shadow_is_needed[i] && i < block.count ? std::int32_t(shadow_origin.x.size()) + i : -1);
-    const RayColumns& rays = block.camera_ray;
-    origin.append(rays.origin, count);
-    direction.append(rays.direction, count);
-    t_near.insert(t_near.end(), rays.t_near.begin(), rays.t_near.begin() + count);
-    t_far.insert(t_far.end(), rays.t_far.begin(), rays.t_far.begin() + count);
-    is_active.insert(is_active.end(), rays.is_active.begin(), rays.is_active.begin() + count);
+      shadow_order.push_back(block.shadow_count > 0 && block.shadow_is_needed[i] && i < path.count
+                                 ? std::int32_t(shadow_origin.x.size()) + i
+                                 : -1);
+    rays += path.count;
+    shadow_rays += block.shadow_count;
+    origin.append(path.ray.origin, count);
+    direction.append(path.ray.direction, count);
+    t_near.insert(t_near.end(), path.ray.t_near.begin(), path.ray.t_near.begin() + count);
+    t_far.insert(t_far.end(), path.ray.t_far.begin(), path.ray.t_far.begin() + count);
+    is_active.insert(is_active.end(), path.ray.is_active.begin(), path.ray.is_active.begin() + count);
     shadow_origin.append(block.shadow_origin, count);
     shadow_direction.append(block.shadow_direction, count);
   }
@@ -63,23 +68,30 @@ struct Recording {
     for (std::vector<std::int32_t>* values : {&is_active, &shadow_order}) values->clear();
   }
 
-  /// Casts them all; seconds.
-  double cast_bare(const RayCaster& rays, int lanes) {
+  /// Casts the rays that arrive; seconds.
+  double cast_bare(const RayCaster& caster, int lanes, Coherence coherence) {
     const int count = int(t_near.size());
     hit_t_.resize(t_near.size());
     for (auto* values : {&ng_x_, &ng_y_, &ng_z_, &u_, &v_}) values->resize(t_near.size());
-    for (auto* values : {&geometry_, &primitive_, &is_free_}) values->resize(t_near.size());
+    for (auto* values : {&geometry_, &primitive_}) values->resize(t_near.size());
     const double start = thread_seconds();
-    rays.closest_hits(
+    caster.closest_hits(
         {origin.x.data(), origin.y.data(), origin.z.data(), direction.x.data(), direction.y.data(),
          direction.z.data(), t_near.data(), t_far.data(), is_active.data(), count},
         {hit_t_.data(), ng_x_.data(), ng_y_.data(), ng_z_.data(), u_.data(), v_.data(), geometry_.data(),
          primitive_.data()},
-        lanes, Coherence::coherent);
-    rays.unoccluded({shadow_origin.x.data(), shadow_origin.y.data(), shadow_origin.z.data(),
-                     shadow_direction.x.data(), shadow_direction.y.data(), shadow_direction.z.data(),
-                     shadow_order.data(), count, shadow_segment_end},
-                    is_free_.data(), lanes, Coherence::incoherent);
+        lanes, coherence);
+    return thread_seconds() - start;
+  }
+
+  /// Casts the shadow rays; seconds.
+  double cast_bare_shadows(const RayCaster& caster, int lanes) {
+    is_free_.resize(t_near.size());
+    const double start = thread_seconds();
+    caster.unoccluded({shadow_origin.x.data(), shadow_origin.y.data(), shadow_origin.z.data(),
+                       shadow_direction.x.data(), shadow_direction.y.data(), shadow_direction.z.data(),
+                       shadow_order.data(), int(t_near.size()), shadow_segment_end},
+                      is_free_.data(), lanes, Coherence::incoherent);
     return thread_seconds() - start;
   }
 
@@ -89,12 +101,19 @@ struct Recording {
 };
 
 struct Measurement {
-  double samples = 0, render_seconds = 0, bare_seconds = 0;
+  double samples = 0, render_seconds = 0;
+  double camera_seconds = 0, bounce_seconds = 0, shadow_seconds = 0;  ///< Bare.
+  std::int64_t bounce_rays = 0;
+  double lane_occupancy = 0;
   std::map<std::string, double> stage_shares;
+
+  double bare_seconds() const { return camera_seconds + bounce_seconds + shadow_seconds; }
 };
 
-Measurement measure(const Scene& scene, Isa isa, int samples_per_pixel, double most_samples) {
+Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Isa isa, int samples_per_pixel,
+                    double most_samples) {
   RenderSettings settings;
+  settings.integrator = integrator;
   settings.samples_per_pixel = samples_per_pixel;
   settings.replicates = std::gcd(4, samples_per_pixel);
   settings.isa = isa;
@@ -104,8 +123,11 @@ Measurement measure(const Scene& scene, Isa isa, int samples_per_pixel, double m
   std::vector<InvalidSample> invalid;
   const auto block = std::make_unique<SampleBlock>();
   const auto recording_block = std::make_unique<SampleBlock>();
-  Recording recording;
-  const std::function<void(const SampleBlock&)> record = [&](const SampleBlock& b) { recording.append(b); };
+  Recording camera, bounces;
+  const std::function<void(const SampleBlock&, int)> record = [&](const SampleBlock& b, int vertex) {
+    (vertex == 0 ? camera : bounces).append(b);
+  };
+  recording_block->on_vertex = &record;
 
   constexpr int columns = width_px / tile_px, tiles = columns * (height_px / tile_px);
   const double tile_samples = double(tile_px) * tile_px * samples_per_pixel;
@@ -121,18 +143,22 @@ Measurement measure(const Scene& scene, Isa isa, int samples_per_pixel, double m
                 .y_end = tile / columns * tile_px + tile_px,
                 .block = recording_block.get(),
                 .film = &film,
-                .invalid = &invalid,
-                .on_block = &record};
-    recording.clear();
+                .invalid = &invalid};
+    camera.clear();
+    bounces.clear();
     kernel.render_tile(job);
     job.block = block.get();
-    job.on_block = nullptr;
     const double start = thread_seconds();
     kernel.render_tile(job);
     sum.render_seconds += thread_seconds() - start;
-    sum.bare_seconds += recording.cast_bare(scene.rays, kernel.lanes);
+    sum.camera_seconds += camera.cast_bare(scene.rays, kernel.lanes, Coherence::coherent);
+    sum.bounce_seconds += bounces.cast_bare(scene.rays, kernel.lanes, Coherence::incoherent);
+    sum.shadow_seconds += camera.cast_bare_shadows(scene.rays, kernel.lanes) +
+                          bounces.cast_bare_shadows(scene.rays, kernel.lanes);
     sum.samples += tile_samples;
   }
+  sum.bounce_rays = bounces.rays;
+  sum.lane_occupancy = double(block->counts.paths) / double(block->counts.lanes);
   double staged = 0;
   for (const double seconds : block->clock.seconds()) staged += seconds;
   for (std::size_t s = 0; s < stage_names.size(); ++s)
@@ -141,8 +167,10 @@ Measurement measure(const Scene& scene, Isa isa, int samples_per_pixel, double m
 }
 
 /// Samples a second of a whole render.
-double throughput(const Scene& scene, int threads, int samples_per_pixel) {
+double throughput(const Scene& scene, const IntegratorSettings& integrator, int threads,
+                  int samples_per_pixel) {
   RenderSettings settings;
+  settings.integrator = integrator;
   settings.samples_per_pixel = samples_per_pixel;
   settings.isa = available_isas().back();
   settings.threads = threads;
@@ -156,10 +184,12 @@ int main(int argc, char** argv) try {
   CLI::App app{"Fraction of the bare-ray limit that a render reaches, on generated scenes"};
   bool is_json = false, has_normals = false;
   double most_samples = 25e6;
+  std::string integrator_name = "light";
   std::vector<std::string> isa_names;
   std::vector<int> grids{65, 700}, sample_counts{64, 1024};
   app.add_flag("--json", is_json, "JSON on standard output");
   app.add_flag("--normals", has_normals, "Meshes with vertex normals");
+  app.add_option("--integrator", integrator_name, "As of etendue render")->capture_default_str();
   app.add_option("--grids", grids, "Sizes of the scene: 2 grid^2 triangles and more")->delimiter(',');
   app.add_option("--spp", sample_counts, "Samples a pixel")->delimiter(',');
   app.add_option("--isa", isa_names, "Instruction sets; all that this machine has unless given")
@@ -167,6 +197,7 @@ int main(int argc, char** argv) try {
   app.add_option("--samples", most_samples, "Samples to render for each figure")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
+  const IntegratorSettings integrator = integrator_from_name(integrator_name);
   std::vector<Isa> isas;
   for (const std::string& name : isa_names) isas.push_back(isa_from_name(name));
   if (isas.empty()) isas = available_isas();
@@ -181,13 +212,20 @@ int main(int argc, char** argv) try {
     for (const Isa isa : isas)
       for (const int samples_per_pixel : sample_counts) {
         const Measurement m =
-            measure(scene, isa, samples_per_pixel, isa == Isa::scalar ? most_samples / 4 : most_samples);
-        const double fraction = m.bare_seconds / m.render_seconds;
+            measure(scene, integrator, isa, samples_per_pixel, isa == Isa::scalar ? most_samples / 4 : most_samples);
+        const double fraction = m.bare_seconds() / m.render_seconds;
         fmt::print(
             text,
             "  {:<6} {:>4} samples a pixel: {:6.2f} M samples/s, limit {:6.2f}, fraction_of_limit {:.3f}\n",
             isa_name(isa), samples_per_pixel, 1e-6 * m.samples / m.render_seconds,
-            1e-6 * m.samples / m.bare_seconds, fraction);
+            1e-6 * m.samples / m.bare_seconds(), fraction);
+        if (m.bounce_rays > 0)
+          fmt::print(text,
+                     "         lane_occupancy {:.3f}; bare rays: camera {:.0f} %, bounces {:.0f} % ({:.2f} M rays/s), "
+                     "shadow {:.0f} %\n",
+                     m.lane_occupancy, 100 * m.camera_seconds / m.bare_seconds(),
+                     100 * m.bounce_seconds / m.bare_seconds(), 1e-6 * double(m.bounce_rays) / m.bounce_seconds,
+                     100 * m.shadow_seconds / m.bare_seconds());
         nlohmann::ordered_json stages;
         fmt::print(text, "        ");
         for (const auto& [stage, share] : m.stage_shares) {
@@ -196,19 +234,21 @@ int main(int argc, char** argv) try {
         }
         fmt::print(text, "\n");
         json.push_back({{"scene", name},
+                        {"integrator", integrator.name},
                         {"isa", isa_name(isa)},
                         {"spp", samples_per_pixel},
                         {"samples_per_second", m.samples / m.render_seconds},
-                        {"limit_samples_per_second", m.samples / m.bare_seconds},
+                        {"limit_samples_per_second", m.samples / m.bare_seconds()},
                         {"fraction_of_limit", fraction},
+                        {"lane_occupancy", m.lane_occupancy},
                         {"stages", stages}});
       }
     if (!isa_names.empty()) continue;  // The speed-up belongs to the complete run.
-    throughput(scene, 2, 16);
+    throughput(scene, integrator, 2, 16);
     double ratio = 0;
     constexpr int rounds = 3;
     for (int round = 0; round < rounds; ++round)
-      ratio += throughput(scene, 2, 64) / throughput(scene, 1, 64) / rounds;
+      ratio += throughput(scene, integrator, 2, 64) / throughput(scene, integrator, 1, 64) / rounds;
     fmt::print(text, "  2 threads over 1: {:.2f}\n", ratio);
     for (auto& row : json)
       if (row["scene"] == name) row["speed_up_2_threads"] = ratio;

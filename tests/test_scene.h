@@ -50,9 +50,9 @@ inline LoadedScene load_scene_text(const std::string& body, const std::vector<Sc
 
 inline std::string text_of(const Vec3d& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-/// A square image of `side_px`; box filter.
+/// A square image of `side_px`; box filter. \param more parameters, as XML
 inline std::string camera_xml(const Vec3d& origin, const Vec3d& target, double fov_deg, int side_px,
-                              std::string_view sampler) {
+                              std::string_view sampler, std::string_view more = {}) {
   const Vec3d along = normalize(target - origin);
   const Vec3d up = std::abs(along.z) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
   return fmt::format(
@@ -127,10 +127,12 @@ inline std::string box_obj(const Vec3d& center, double half, bool is_inward) {
 }
 
 /// The widest instruction set of this machine, all threads.
-inline RenderSettings render_settings(IntegratorKind kind, int samples_per_pixel, int replicates,
-                                      std::uint64_t seed, Combination heuristic = Combination::balance) {
+inline RenderSettings render_settings(std::string_view integrator, int samples_per_pixel, int replicates,
+                                      std::uint64_t seed, DirectLight heuristic = DirectLight::balance) {
   RenderSettings settings;
-  settings.integrator = {kind, heuristic};
+  settings.integrator = integrator_from_name(integrator);
+  if (needs_both_pdfs(settings.integrator.rules.direct_light))
+    settings.integrator.rules.direct_light = heuristic;
   settings.samples_per_pixel = samples_per_pixel;
   settings.replicates = replicates;
   settings.seed = seed;

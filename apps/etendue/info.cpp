@@ -3,9 +3,11 @@
 #include "film/filter.h"
 #include "geometry/camera.h"
 #include "integrator/integrator.h"
+#include "noritest/noritest.h"
 #include "render/isa.h"
 #include "render/render.h"
 #include "sampler/sampler.h"
+#include "scene/load_light.h"
 #include "scene/load_shape.h"
 
 #include <fmt/format.h>
@@ -20,8 +22,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string_view type_name(Parameter::Type type) {
-  constexpr std::array names{"boolean", "integer", "float",  "string",
-                             "color",   "point",   "vector", "transform"};
+  constexpr std::array names{"boolean", "integer", "float",     "string", "color",
+                             "point",   "vector",  "transform", "point"};
   return names[std::size_t(type)];
 }
 
@@ -32,6 +34,7 @@ Json describe(const Plugin& plugin) {
                           {"type", type_name(parameter.type)},
                           {"default", parameter.default_value},
                           {"is_required", parameter.is_required},
+                          {"accepts_texture", parameter.accepts_texture},
                           {"unit", parameter.unit},
                           {"meaning", parameter.meaning}});
   return {{"name", plugin.name}, {"meaning", plugin.meaning}, {"parameters", parameters}};
@@ -67,6 +70,7 @@ Json describe_program() {
   json["shapes"] = describe(shape_plugins());
   json["bsdfs"] = describe(bsdf_plugins());
   json["lights"] = describe(light_plugins());
+  json["tests"] = describe(test_plugins());
   return json;
 }
 
@@ -78,7 +82,8 @@ void print(const Json& json) {
   for (const auto& [name, version] : json["dependencies"].items())
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
-  for (const char* family : {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights"}) {
+  for (const char* family :
+       {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "lights", "tests"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());

@@ -73,12 +73,12 @@ RenderSettings settings_for(const Options& options, const LoadedScene& loaded) {
 }
 
 /// The command line's integrator where it names one; the file's parameters hold where both name the same.
-IntegratorSettings integrator_for(const Options& options, const LoadedScene& loaded,
+IntegratorSettings integrator_for(const Options& options, const LoadedScene& loaded, Dialect dialect,
                                   std::vector<UnreadKey>& unread) {
   const std::string& in_file = loaded.integrator.type;
   if (!options.integrator.empty() && options.integrator != in_file)
     return integrator_from_name(options.integrator);
-  return loaded.integrator.family.empty() ? IntegratorSettings{} : make_integrator(loaded.integrator, unread);
+  return loaded.integrator.family.empty() ? IntegratorSettings{} : make_integrator(loaded.integrator, dialect, unread);
 }
 
 Image to_image(const Film& film) {
@@ -126,9 +126,10 @@ nlohmann::ordered_json stats(const Options& options, const RenderSettings& setti
   nlohmann::ordered_json json;
   json["scene"] = options.scene_file;
   json["dialect"] = dialect_name(description.dialect);
-  json["integrator"] = integrator_name(settings.integrator.kind);
-  if (settings.integrator.kind == IntegratorKind::mis)
-    json["heuristic"] = heuristic_name(settings.integrator.heuristic);
+  json["dialect_reason"] = description.dialect_reason;
+  json["integrator"] = settings.integrator.name;
+  if (needs_both_pdfs(settings.integrator.rules.direct_light))
+    json["heuristic"] = heuristic_name(settings.integrator.rules.direct_light);
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = settings.samples_per_pixel;
   json["replicates"] = settings.replicates;
@@ -145,6 +146,7 @@ nlohmann::ordered_json stats(const Options& options, const RenderSettings& setti
   json["camera_rays"] = result.counts.camera_rays;
   json["shadow_rays"] = result.counts.shadow_rays;
   json["bsdf_rays"] = result.counts.bsdf_rays;
+  json["lane_occupancy"] = result.counts.lane_occupancy();
   json["invalid_samples"] = result.counts.invalid_samples;
   json["mean"] = {mean.r, mean.g, mean.b};
   json["mean_luminance"] = luminance(mean);
@@ -212,10 +214,11 @@ int run(const Options& options) {
   const SceneDesc description = read_nori_xml(options.scene_file, dialect);
   const ThreadLimit thread_limit(options.threads);
   LoadedScene loaded = load_scene(description);
+  check_has_light(description, loaded.scene);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
   std::vector<UnreadKey> unread;
-  settings.integrator = integrator_for(options, loaded, unread);
+  settings.integrator = integrator_for(options, loaded, description.dialect, unread);
   for (const UnreadKey& key : unread) loaded.warnings.push_back(key.message);
   warn(options, loaded.warnings);
   if (!options.replay.empty()) {
@@ -228,7 +231,7 @@ int run(const Options& options) {
     fmt::print(stderr, "{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n",
                options.scene_file, dialect_name(description.dialect), description.dialect_reason,
                loaded.scene.camera.width_px, loaded.scene.camera.height_px, settings.samples_per_pixel,
-               settings.replicates, integrator_name(settings.integrator.kind), threads,
+               settings.replicates, settings.integrator.name, threads,
                isa_name(settings.isa));
 
   std::signal(SIGINT, handle_interrupt);
@@ -245,7 +248,7 @@ int run(const Options& options) {
                     {"seed", std::to_string(settings.seed)},
                     {"replicates", fmt::format("0-{}", settings.replicates - 1)},
                     {"samplesPerPixel", std::to_string(settings.samples_per_pixel)},
-                    {"integrator", std::string(integrator_name(settings.integrator.kind))},
+                    {"integrator", std::string(settings.integrator.name)},
                     {"isa", std::string(isa_name(settings.isa))},
                     {"dialect", std::string(dialect_name(description.dialect))},
                     {"sampler", std::string(sampler_name(loaded.scene.sampler))},
@@ -254,8 +257,8 @@ int run(const Options& options) {
                      rendered = count_rendered(result.film);
   if (result.is_interrupted)
     image.metadata.emplace_back("pixelsNotRendered", std::to_string(pixels - rendered));
-  if (settings.integrator.kind == IntegratorKind::mis)
-    image.metadata.emplace_back("heuristic", heuristic_name(settings.integrator.heuristic));
+  if (needs_both_pdfs(settings.integrator.rules.direct_light))
+    image.metadata.emplace_back("heuristic", heuristic_name(settings.integrator.rules.direct_light));
   for (const std::filesystem::path output : options.outputs)
     output.extension() == ".png" ? write_png(output, image) : write_exr(output, image);
   if (!options.stats_file.empty())

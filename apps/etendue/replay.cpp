@@ -3,7 +3,6 @@
 #include "base/error.h"
 
 #include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 #include <vector>
 
@@ -23,29 +22,49 @@ std::string light_sample_text(const Scene& scene, const SampleTrace::LightSample
                                       : sample.is_visible        ? "free"
                                                                  : "blocked";
   return fmt::format(
-      "light sample      {}\n"
-      "  position        {} m\n"
-      "  pdf             {} 1/sr\n"
-      "  radiance / pdf  {}\n"
-      "  unshadowed      {} (with BSDF, cosine and weight)\n"
-      "  shadow ray      {}\n",
-      light_text(scene, sample.light), text(sample.position), sample.pdf_solid_angle,
+      "  light sample      {}\n"
+      "    end             {} m\n"
+      "    pdf             {} 1/sr\n"
+      "    radiance / pdf  {}\n"
+      "    unshadowed      {} (with BSDF, cosine, weight and throughput)\n"
+      "    shadow ray      {}\n",
+      light_text(scene, sample.light), text(sample.end), sample.pdf_solid_angle,
       text(sample.radiance_over_pdf), text(sample.unshadowed), shadow_ray);
 }
 
-std::string bsdf_sample_text(const Scene& scene, const SampleTrace::BsdfSample& sample) {
-  const std::string ray =
-      !sample.is_ray_cast ? "not cast: nothing to add"
-      : std::isinf(sample.distance)
-          ? "hits nothing"
-          : fmt::format("hits {} at {} m", light_text(scene, sample.light), sample.distance);
+std::string bsdf_sample_text(const SampleTrace::BsdfSample& sample) {
   return fmt::format(
-      "BSDF sample\n"
-      "  direction       {}\n"
-      "  pdf             {} 1/sr\n"
-      "  throughput      {} (f cos / pdf)\n"
-      "  ray             {}\n",
-      text(sample.direction), sample.pdf_solid_angle, text(sample.throughput), ray);
+      "  BSDF sample\n"
+      "    direction       {}\n"
+      "    pdf             {} 1/sr\n"
+      "    throughput      {} (of the path)\n"
+      "    path            {}\n",
+      text(sample.direction), sample.pdf_solid_angle, text(sample.throughput),
+      sample.is_followed ? "goes on" : "ends");
+}
+
+std::string vertex_text(const Scene& scene, const SampleTrace::Vertex& vertex, std::size_t number) {
+  std::string all = fmt::format("vertex {}\n", number);
+  switch (vertex.kind) {
+    case SampleTrace::Vertex::Kind::nothing:
+      all += "  hit               nothing\n";
+      break;
+    case SampleTrace::Vertex::Kind::medium:
+      all += fmt::format("  in the medium     {} m\n", text(vertex.position));
+      break;
+    case SampleTrace::Vertex::Kind::surface:
+      all += fmt::format(
+          "  hit               shape {}, triangle {}, material {}, {}\n"
+          "  position          {} m\n"
+          "  ng                {}\n"
+          "  ns                {}\n",
+          vertex.surface->geometry + 1, vertex.surface->primitive, vertex.surface->material,
+          light_text(scene, vertex.surface->light), text(vertex.position), text(vertex.surface->ng),
+          text(vertex.surface->ns));
+  }
+  if (vertex.light_sample) all += light_sample_text(scene, *vertex.light_sample);
+  if (vertex.bsdf_sample) all += bsdf_sample_text(*vertex.bsdf_sample);
+  return all + fmt::format("  radiance so far   {}\n", text(vertex.radiance));
 }
 
 }  // namespace
@@ -72,27 +91,15 @@ SampleId sample_id_from_text(const std::string& text) {
 std::string describe(const Scene& scene, const SampleId& sample, const SampleTrace& trace) {
   std::string all = fmt::format(
       "pixel {},{} replicate {} sample {}\n"
-      "film              {} {} px\n"
+      "film                {} {} px\n"
       "camera ray\n"
-      "  origin          {} m\n"
-      "  direction       {}\n",
+      "  origin            {} m\n"
+      "  direction         {}\n",
       sample.x, sample.y, sample.replicate, sample.index, trace.x_px, trace.y_px, text(trace.ray_origin),
       text(trace.ray_direction));
-  if (trace.hit)
-    all += fmt::format(
-        "hit               shape {}, triangle {}, material {}, {}\n"
-        "  position        {} m\n"
-        "  ng              {}\n"
-        "  ns              {}\n",
-        trace.hit->geometry + 1, trace.hit->primitive, trace.hit->material,
-        light_text(scene, trace.hit->light), text(trace.hit->position), text(trace.hit->ng),
-        text(trace.hit->ns));
-  else
-    all += "hit               nothing\n";
-  all += fmt::format("emission seen     {}\n", text(trace.emission));
-  if (trace.light_sample) all += light_sample_text(scene, *trace.light_sample);
-  if (trace.bsdf_sample) all += bsdf_sample_text(scene, *trace.bsdf_sample);
-  return all + fmt::format("radiance          {}\n", text(trace.radiance));
+  for (std::size_t number = 0; number < trace.vertices.size(); ++number)
+    all += vertex_text(scene, trace.vertices[number], number);
+  return all + fmt::format("radiance            {}\n", text(trace.radiance));
 }
 
 }  // namespace etendue::app

@@ -36,6 +36,12 @@ xsimd::batch_bool<float, A> mask_and(const xsimd::batch_bool<float, A>& a,
                                      const xsimd::batch_bool<float, A>& b) {
   return a & b;
 }
+inline bool mask_or(bool a, bool b) { return a || b; }
+template <class A>
+xsimd::batch_bool<float, A> mask_or(const xsimd::batch_bool<float, A>& a,
+                                    const xsimd::batch_bool<float, A>& b) {
+  return a | b;
+}
 inline bool mask_not(bool a) { return !a; }
 template <class A>
 xsimd::batch_bool<float, A> mask_not(const xsimd::batch_bool<float, A>& a) {
@@ -76,6 +82,27 @@ void store_mask(std::int32_t* p, const Mask<F>& m) {
 template <class F>
 Mask<F> load_mask(const std::int32_t* p) {
   return less(load_lanes<Int<F>>(p), Int<F>(0));
+}
+
+/// base[index] = value in the lanes of `m`, whose indices differ.
+template <class F>
+void scatter(float* base, std::int32_t index, bool m, float value) {
+  if (m) base[index] = value;
+}
+template <class F, class A>
+void scatter(float* base, const xsimd::batch<std::int32_t, A>& index, const xsimd::batch_bool<float, A>& m,
+             const xsimd::batch<float, A>& value) {
+#if defined(__AVX512F__)
+  _mm512_mask_i32scatter_ps(base, m.data, index.data, value.data, 4);
+#else
+  alignas(64) std::int32_t indices[lane_count_v<F>], is_set[lane_count_v<F>];
+  alignas(64) float values[lane_count_v<F>];
+  store_lanes(indices, index);
+  store_lanes(values, value);
+  store_mask<F>(is_set, m);
+  for (int lane = 0; lane < lane_count_v<F>; ++lane)
+    if (is_set[lane]) base[indices[lane]] = values[lane];
+#endif
 }
 
 // --- conversions ---

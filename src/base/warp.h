@@ -64,6 +64,20 @@ F uniform_cone_pdf_solid_angle(const F& one_minus_cos_max) {
   return F(0.5f * inv_pi) / one_minus_cos_max;
 }
 
+/// Points uniform in the unit disk; density 1 / pi. Squares around the middle become circles, which keeps
+/// distances better than polar coordinates: Shirley and Chiu 1997, "A low distortion map between disk and
+/// square".
+template <class F>
+Vec2<F> square_to_uniform_disk(const Vec2<F>& u) {
+  const F x = F(2) * u.x - F(1), y = F(2) * u.y - F(1);
+  const auto is_wide = abs(x) > abs(y);
+  const F radius = select(is_wide, x, y), other = select(is_wide, y, x);
+  const F eighths = other / select(abs(radius) > F(0), radius, F(1));
+  F sine, cosine;
+  sincos_turns(F(0.125f) * eighths, sine, cosine);
+  return {radius * select(is_wide, cosine, sine), radius * select(is_wide, sine, cosine)};
+}
+
 /// Points uniform on the unit sphere; density 1 / (4 pi).
 template <class F>
 Vec3<F> square_to_uniform_sphere(const Vec2<F>& u) {

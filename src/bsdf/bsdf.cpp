@@ -3,14 +3,26 @@
 namespace etendue {
 
 const std::vector<Plugin>& bsdf_plugins() {
-  static const std::vector<Plugin> plugins{diffuse_plugin, phong_plugin};
+  static const std::vector<Plugin> plugins{diffuse_plugin,        phong_plugin,      mirror_plugin,
+                                           dielectric_plugin,     microfacet_plugin, roughconductor_plugin,
+                                           roughdielectric_plugin};
   return plugins;
 }
 
-Bsdf make_bsdf(const Object& description, std::vector<UnreadKey>& unread) {
+Bsdf make_bsdf(const Object& description, const std::filesystem::path& /*directory*/,
+               std::vector<UnreadKey>& unread) {
   if (description.type == diffuse_plugin.name) return make_diffuse(description, unread);
   if (description.type == phong_plugin.name) return make_phong(description, unread);
+  if (description.type == mirror_plugin.name) return make_mirror(description, unread);
+  if (description.type == dielectric_plugin.name) return make_dielectric(description, unread);
+  if (description.type == microfacet_plugin.name) return make_microfacet(description, unread);
+  if (description.type == roughconductor_plugin.name) return make_roughconductor(description, unread);
+  if (description.type == roughdielectric_plugin.name) return make_roughdielectric(description, unread);
   throw unknown_plugin(description, bsdf_plugins());
+}
+
+bool has_texture(const Bsdf& material) {
+  return std::visit([](const auto& model) { return model.has_texture(); }, material);
 }
 
 }  // namespace etendue

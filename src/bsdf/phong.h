@@ -5,6 +5,7 @@
 #include "base/frame.h"
 #include "base/warp.h"
 #include "bsdf/bsdf_sample.h"
+#include "bsdf/lobe_choice.h"
 #include "scenefile/parameters.h"
 
 namespace etendue {
@@ -17,6 +18,12 @@ struct Phong {
   Colorf kd{0.5f, 0.5f, 0.5f}, ks{0.5f, 0.5f, 0.5f};
   float exponent = 20;
   float specular_probability = 0.5f;
+
+  bool has_texture() const { return false; }
+  template <class F>
+  const Phong& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {
+    return *this;
+  }
 
   template <class F>
   Color<F> eval_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
@@ -38,16 +45,12 @@ struct Phong {
 
   template <class F>
   BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
-    // The lobe is chosen by u.x, which is then stretched back over [0, 1).
-    const F p(specular_probability);
-    const auto is_specular = u_bsdf.x < p;
-    const F below = u_bsdf.x / max(p, F(1e-12f)), above = (u_bsdf.x - p) / max(F(1) - p, F(1e-12f));
-    const F u_lobe = min(select(is_specular, below, above), F(0x1.fffffep-1f));
+    const LobeChoice<F> lobe(u_bsdf.x, specular_probability);
     const Frame<F> mirror_frame({-wo_local.x, -wo_local.y, wo_local.z});
     const Vec3<F> around_mirror =
-        mirror_frame.world_from_local(square_to_power_cosine(Vec2<F>{u_lobe, u_bsdf.y}, F(exponent)));
-    const Vec3<F> around_normal = square_to_cosine_hemisphere(Vec2<F>{u_lobe, u_bsdf.y});
-    const Vec3<F> wi_local = select(is_specular, around_mirror, around_normal);
+        mirror_frame.world_from_local(square_to_power_cosine(Vec2<F>{lobe.u, u_bsdf.y}, F(exponent)));
+    const Vec3<F> around_normal = square_to_cosine_hemisphere(Vec2<F>{lobe.u, u_bsdf.y});
+    const Vec3<F> wi_local = select(lobe.is_first, around_mirror, around_normal);
     const F pdf = pdf_solid_angle_(wo_local, wi_local);
     const F cos_over_pdf = select(pdf > F(0), wi_local.z / max(pdf, F(1e-37f)), F(0));
     return {wi_local, eval_(wo_local, wi_local) * cos_over_pdf, pdf};

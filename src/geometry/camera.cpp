@@ -12,12 +12,14 @@ using Type = Parameter::Type;
 const Plugin perspective_plugin{
     "camera",
     "perspective",
-    "A pinhole camera that looks along +z of its frame.",
+    "A pinhole camera or a thin lens that looks along +z of its frame.",
     {{"width", Type::integer, "1280", "px", "Width of the image"},
      {"height", Type::integer, "720", "px", "Height of the image"},
      {"fov", Type::real, "30", "deg", "Horizontal field of view"},
      {"nearClip", Type::real, "1e-4", "m", "Nothing nearer is seen"},
      {"farClip", Type::real, "1e4", "m", "Nothing farther is seen"},
+     {"apertureRadius", Type::real, "0", "m", "Radius of the lens; 0: a pinhole"},
+     {"focusDistance", Type::real, "", "m", "Of the plane that is sharp; needed where there is a lens"},
      {"toWorld", Type::transform, "", "", "World from camera; identity unless given"}},
     {"rfilter", "sampler"}};
 
@@ -29,6 +31,37 @@ int side(const Parameters& parameters, std::string_view name) {
     throw InputError(parameters.location(name),
                      fmt::format("'{}' is {}; it must be from 1 to {}", name, value, most_pixels_a_side));
   return value;
+}
+
+struct Lens {
+  double radius = 0, focus_distance = 0;  ///< m, in the camera's own space; radius 0: a pinhole.
+};
+
+constexpr std::string_view focus_hint =
+    "give the distance of what shall be sharp, in metres along the optical axis";
+
+Lens lens_of(const Parameters& parameters, std::vector<UnreadKey>& unread) {
+  const double radius = parameters.real("apertureRadius");
+  if (radius < 0)
+    throw InputError(parameters.location("apertureRadius"),
+                     fmt::format("'apertureRadius' is {}; it must not be negative", radius),
+                     "give the radius of the lens in metres, or 0 for a pinhole");
+  if (radius == 0) {
+    if (parameters.has("focusDistance") && !parameters.is_stated("apertureRadius"))
+      unread.push_back({format_message(
+          parameters.location("focusDistance"), "'focusDistance' does nothing without 'apertureRadius'",
+          "a pinhole is sharp at every distance; give the radius of the lens too")});
+    return {};
+  }
+  if (!parameters.has("focusDistance"))
+    throw InputError(parameters.location("apertureRadius"),
+                     "'apertureRadius' needs 'focusDistance': nobody knows what shall be sharp", focus_hint);
+  if (parameters.real("focusDistance") <= 0)
+    throw InputError(
+        parameters.location("focusDistance"),
+        fmt::format("'focusDistance' is {}; it must be positive", parameters.real("focusDistance")),
+        focus_hint);
+  return {radius, parameters.real("focusDistance")};
 }
 
 }  // namespace
@@ -54,6 +87,7 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
     throw InputError(parameters.location("nearClip"),
                      fmt::format("the clip planes are at {} and {}; 0 < nearClip < farClip is needed",
                                  camera.near_clip, camera.far_clip));
+  const Lens lens = lens_of(parameters, unread);
   const Transform world_from_camera =
       parameters.has("toWorld") ? parameters.transform("toWorld") : Transform{};
   if (!is_invertible(world_from_camera))
@@ -77,6 +111,18 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   camera.at_film_origin = to_world({-image_right * half_width, 0.5 * px * camera.height_px, 1});
   camera.per_px_x = to_world({image_right * px, 0, 0});
   camera.per_px_y = to_world({0, -px, 0});
+  if (lens.radius > 0) {
+    camera.lens_x = to_world({lens.radius, 0, 0});
+    camera.lens_y = to_world({0, lens.radius, 0});
+    camera.inv_focus_distance = float(1 / lens.focus_distance);
+    camera.has_lens = true;
+    if (!std::isfinite(length_sq(camera.lens_x)) || !std::isfinite(length_sq(camera.lens_y)) ||
+        !std::isfinite(length_sq(camera.lens_x * camera.inv_focus_distance)))
+      throw InputError(parameters.location("apertureRadius"),
+                       fmt::format("a lens of radius {} focused at {} is too large to compute with",
+                                   lens.radius, lens.focus_distance),
+                       "both are in metres; common lenses have a radius of a few millimetres");
+  }
   return camera;
 }
 

@@ -15,7 +15,7 @@ struct CameraRay {
   F t_near, t_far;            ///< The clip planes, as distances along this ray (m).
 };
 
-/// A pinhole camera. The field of view is horizontal, as in the Nori family.
+/// A pinhole or a thin lens. The field of view is horizontal, as in the Nori family.
 struct Camera {
   int width_px = 1280, height_px = 720;
   Vec3f origin{0, 0, 0};  ///< m
@@ -23,16 +23,41 @@ struct Camera {
   /// left; its component along the optical axis is 1.
   Vec3f at_film_origin{}, per_px_x{}, per_px_y{};
   float near_clip = 1e-4f, far_clip = 1e4f;  ///< Along the optical axis (m).
+  /// The lens lies around `origin`, square to the optical axis: its radii along the camera's x and y, in the
+  /// world (m).
+  Vec3f lens_x{0, 0, 0}, lens_y{0, 0, 0};
+  float inv_focus_distance = 0;  ///< Of the plane that is sharp, along the optical axis (1/m).
+  bool has_lens = false;         ///< Otherwise it is a pinhole.
 
+  /// The ray through the middle of the lens.
   template <class F>
   CameraRay<F> ray(const F& x_px, const F& y_px) const {
-    const Vec3<F> along{F(at_film_origin.x) + x_px * F(per_px_x.x) + y_px * F(per_px_y.x),
-                        F(at_film_origin.y) + x_px * F(per_px_x.y) + y_px * F(per_px_y.y),
-                        F(at_film_origin.z) + x_px * F(per_px_x.z) + y_px * F(per_px_y.z)};
+    return ray_from({F(origin.x), F(origin.y), F(origin.z)}, along(x_px, y_px));
+  }
+
+  /// The ray through a point of the lens, which meets the one through its middle in the plane that is sharp.
+  /// \param on_lens in the unit disk
+  template <class F>
+  CameraRay<F> ray(const F& x_px, const F& y_px, const Vec2<F>& on_lens) const {
+    const Vec3<F> from_middle{F(lens_x.x) * on_lens.x + F(lens_y.x) * on_lens.y,
+                              F(lens_x.y) * on_lens.x + F(lens_y.y) * on_lens.y,
+                              F(lens_x.z) * on_lens.x + F(lens_y.z) * on_lens.y};
+    return ray_from(Vec3<F>{F(origin.x), F(origin.y), F(origin.z)} + from_middle,
+                    along(x_px, y_px) - from_middle * F(inv_focus_distance));
+  }
+
+ private:
+  template <class F>
+  Vec3<F> along(const F& x_px, const F& y_px) const {
+    return {F(at_film_origin.x) + x_px * F(per_px_x.x) + y_px * F(per_px_y.x),
+            F(at_film_origin.y) + x_px * F(per_px_x.y) + y_px * F(per_px_y.y),
+            F(at_film_origin.z) + x_px * F(per_px_x.z) + y_px * F(per_px_y.z)};
+  }
+  /// \param along has component 1 along the optical axis
+  template <class F>
+  CameraRay<F> ray_from(const Vec3<F>& from, const Vec3<F>& along) const {
     const F per_unit_depth = sqrt(dot(along, along));
-    return {{F(origin.x), F(origin.y), F(origin.z)},
-            along * (F(1) / per_unit_depth),
-            per_unit_depth * F(near_clip),
+    return {from, along * (F(1) / per_unit_depth), per_unit_depth * F(near_clip),
             per_unit_depth * F(far_clip)};
   }
 };

@@ -48,6 +48,9 @@ class Geometry {
   bool has_any_normals = false;
 };
 
+template <class F>
+Vec2<F> sphere_uv(const Vec3<F>& ng) { return {ng.x, ng.y}; }
+
 /// The vertex normal interpolated at barycentric (u, v), not normalised; lanes must be in `m`.
 template <class F>
 Vec3<F> interpolate_normal(const Geometry& geometry, const Int<F>& geometry_id, const Int<F>& primitive,
@@ -63,6 +66,28 @@ Vec3<F> interpolate_normal(const Geometry& geometry, const Int<F>& geometry_id, 
   };
   const F w = F(1) - barycentric.x - barycentric.y;
   return normal(0) * w + normal(1) * barycentric.x + normal(2) * barycentric.y;
+}
+
+/// Surface coordinates at barycentric (u, v) of a mesh's triangle, (0, 0) where the mesh has none; on a sphere
+/// by its outward normal `ng`.
+template <class F>
+Vec2<F> surface_uv(const Geometry& geometry, const Int<F>& geometry_id, const Int<F>& primitive,
+                   const Vec2<F>& barycentric, const Vec3<F>& ng, const Mask<F>& m) {
+  const Int<F> zero(0);
+  const Int<F> safe_id = select(m, geometry_id, zero);
+  const Mask<F> is_mesh = mask_and(m, less(gather(geometry.sphere.data(), safe_id), zero));
+  Vec2<F> uv = sphere_uv(ng);
+  if (!any(is_mesh)) return uv;
+  const Int<F> triangle = select(is_mesh, gather(geometry.first_triangle.data(), safe_id) + primitive, zero);
+  const float* uvs = &geometry.uvs[0].x;
+  const auto corner_uv = [&](int corner) {
+    const Int<F> at = gather(geometry.indices.data() + corner, triangle * Int<F>(3)) * Int<F>(2);
+    return Vec2<F>{gather(uvs, at), gather(uvs + 1, at)};
+  };
+  const Vec2<F> uv_0 = corner_uv(0), uv_1 = corner_uv(1), uv_2 = corner_uv(2);
+  const F w = F(1) - barycentric.x - barycentric.y;
+  return {select(is_mesh, uv_0.x * w + uv_1.x * barycentric.x + uv_2.x * barycentric.y, uv.x),
+          select(is_mesh, uv_0.y * w + uv_1.y * barycentric.x + uv_2.y * barycentric.y, uv.y)};
 }
 
 }  // namespace etendue

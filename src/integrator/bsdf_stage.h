@@ -1,80 +1,131 @@
-// The BSDF stages: sample a direction from the BSDF, cast the ray, add the light that it meets.
+// The BSDF stages: sample a direction at every vertex, decide which paths go on, and follow those.
 #pragma once
 
 #include "base/frame.h"
-#include "bsdf/bsdf.h"
 #include "integrator/camera_stage.h"
-#include "integrator/light_sampling.h"
-#include "integrator/mis_weights.h"
+#include "integrator/path_rules.h"
 #include "integrator/sample_block.h"
-#include "integrator/surface_point.h"
-#include "integrator/surface_stage.h"
+#include "integrator/vertex.h"
 
 #include <limits>
 
 namespace etendue {
 
-/// For each sample: a direction from the BSDF at its surface, the ray along it, and its throughput f cos /
-/// pdf.
+/// Paths are ended at random from this vertex on.
+inline constexpr int first_roulette_vertex = 2;
+/// No path goes on for certain, so that light between perfect mirrors comes to an end.
+inline constexpr float most_survival = 0.99f;
+
+/// The probability that Russian roulette lets a path go on: min(max(throughput) eta^2, 0.99). The throughput
+/// of radiance falls by eta^2 on the way into a denser medium, and rises again on the way out: that is no
+/// reason to end it.
 template <class F>
-void sample_bsdf(const Scene& scene, SampleBlock& block) {
-  for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const SurfacePoint<F> surface(scene, block.camera_ray, block.camera_hit, i);
-    if (!any(surface.is_there)) {
-      store_lanes(&block.bsdf_ray.is_active[i], Int<F>(0));
+F survival(const Color<F>& throughput, const F& eta) {
+  return min(max(max(throughput.r, throughput.g), throughput.b) * eta * eta, F(most_survival));
+}
+
+/// For each path: a direction from the BSDF (or phase function) at its vertex, the ray along it, and the
+/// path's throughput and density with it. `number` counts those of one vertex.
+template <class F>
+[[gnu::noinline]] void sample_bsdf(const Scene& scene, SampleBlock& block, const PathRules& rules,
+                                   int vertex_number, int number) {
+  PathColumns& path = block.path;
+  const F infinity(std::numeric_limits<float>::infinity());
+  for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
+    const Vertex<F> vertex(scene, path.ray, path.hit, i);
+    if (!any(vertex.is_there)) {
+      store_lanes(&block.next_ray.is_active[i], Int<F>(0));
       continue;
     }
-    const Vec2<F> u_bsdf = to_unit_floats<F>(sample_bits<F>(scene, block, i, dimension::bsdf));
-    const Frame<F> frame(surface.ns);
-    const Vec3<F> wo_local = frame.local_from_world(surface.wo);
-    BsdfSample<F> sample{{F(0), F(0), F(1)}, {F(0), F(0), F(0)}, F(0)};
-    for_each_material<F>(scene.materials, surface.material, surface.is_there,
-                         [&](const auto& bsdf, const Mask<F>& lanes) {
-                           sample = select(lanes, bsdf.sample_(wo_local, u_bsdf), sample);
-                         });
+    const Vec2<F> u_bsdf = to_unit_floats<F>(sample_bits<F>(
+        scene, path, i, dimension::at_vertex(dimension::bsdf, vertex_number), number, rules.bsdf_samples));
+    const Frame<F> frame(vertex.ns);
+    const Vec3<F> wo_local = frame.local_from_world(vertex.wo);
+    BsdfSample<F> sample{{F(0), F(0), F(1)}, black<F>(), F(0), F(1)};
+    for_each_scatterer<F>(scene, vertex, vertex.is_there, [&](const auto& bsdf, const Mask<F>& lanes) {
+      sample = select(lanes, bsdf.sample_(wo_local, u_bsdf), sample);
+    });
     const Vec3<F> wi = frame.world_from_local(sample.wi_local);
-    store_mask<F>(&block.bsdf_ray.is_active[i],
-                  mask_and(surface.is_there, sample.pdf_solid_angle > F(0), mask_not(is_black(sample.weight)),
-                           surface.reflects_towards(wi)));
-    store_lanes(block.bsdf_ray.origin, i, surface.offset_origin());
-    store_lanes(block.bsdf_ray.direction, i, wi);
-    store_lanes(&block.bsdf_ray.t_near[i], F(0));
-    store_lanes(&block.bsdf_ray.t_far[i], F(std::numeric_limits<float>::infinity()));
-    store_lanes(block.throughput, i, sample.weight);
-    store_lanes(&block.pdf_bsdf[i], sample.pdf_solid_angle);
+    const Mask<F> is_dirac = sample.pdf_solid_angle == infinity;
+    Color<F> throughput = load_lanes<F>(path.throughput, i) * sample.weight;
+    if (rules.bsdf_samples > 1) throughput = throughput * F(1 / float(rules.bsdf_samples));
+    const F eta = load_lanes<F>(&path.eta[i]) * sample.eta;
+    Mask<F> goes_on = mask_and(
+        vertex.is_there, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
+        mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
+    if (rules.is_dirac_only) goes_on = mask_and(goes_on, is_dirac);
+    if (vertex_number >= first_roulette_vertex) {
+      const Mask<F> is_number =
+          mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
+                   is_finite_nonnegative(throughput.b));
+      const Mask<F> is_lost = mask_and(goes_on, mask_not(is_number));
+      // What is not a number must reach the sum, where it is reported, and no die decides on it.
+      if (any(is_lost)) add_radiance<F>(block, i, is_lost, throughput);
+      const F probability = survival(throughput, eta);
+      const F u_roulette = to_unit_float(
+          sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex_number)).x);
+      goes_on = mask_and(goes_on, is_number, u_roulette < probability);
+      throughput = throughput * (F(1) / probability);
+    }
+    store_mask<F>(&block.next_ray.is_active[i], goes_on);
+    store_lanes(block.next_ray.origin, i, vertex.offset_origin(wi));
+    store_lanes(block.next_ray.direction, i, wi);
+    store_lanes(path.throughput, i, throughput);
+    store_lanes(&path.pdf[i], sample.pdf_solid_angle);
+    store_lanes(&path.eta[i], eta);
+    store_lanes(path.from, i, vertex.position);
   }
-  for (int i = 0; i < block.count; ++i) block.bsdf_rays -= block.bsdf_ray.is_active[i];
   block.clock.finish(Stage::bsdf_samples);
 }
 
-/// Casts the BSDF samples' rays and adds the emission of what they hit.
+/// Leaves out the paths that have ended: the others move up, in their order, so that packets stay full, and
+/// their next ray becomes the one that arrives.
 template <class F>
-void add_bsdf_hits(const Scene& scene, SampleBlock& block, Combination combination) {
-  cast_rays<F>(scene, block.bsdf_ray, block.bsdf_hit, block.padded_count, Coherence::incoherent);
-  for_each_emission<F>(
-      scene, block.bsdf_ray, block.bsdf_hit, block.padded_count,
-      [&](int i, const Mask<F>& lanes, const Int<F>& light, const Color<F>& emitted, const Vec3<F>& ng) {
-        F weight = mis_weight(combination, F(1), F(1));
-        if (needs_both_pdfs(combination)) {
-          const SurfacePoint<F> surface(scene, block.camera_ray, block.camera_hit, i);
-          const Vec3<F> wi = load_lanes<F>(block.bsdf_ray.direction, i);
-          const Vec3<F> hit =
-              load_lanes<F>(block.bsdf_ray.origin, i) + wi * load_lanes<F>(&block.bsdf_hit.t[i]);
-          const F pdf_light = light_pdf_solid_angle<F>(scene, light, surface.position, hit, ng, wi, lanes);
-          weight = mis_weight(combination, select(lanes, load_lanes<F>(&block.pdf_bsdf[i]), F(1)), pdf_light);
-        }
-        const Color<F> direct = load_lanes<F>(block.throughput, i) * emitted * weight;
-        const Color<F> before = load_lanes<F>(block.radiance, i);
-        store_lanes(block.radiance, i, before + select(lanes, direct, black<F>()));
-      });
-  block.clock.finish(Stage::bsdf_rays);
-}
+[[gnu::noinline]] void follow_paths(SampleBlock& block) {
+  PathColumns& path = block.path;
+  Column<std::int32_t>& kept = block.order;
+  int count = 0;
+  for (int i = 0; i < path.count; ++i) {
+    kept[std::size_t(count)] = i;
+    count -= block.next_ray.is_active[i];
+  }
+  path.count = count;
+  path.padded_count = (count + widest_lanes - 1) / widest_lanes * widest_lanes;
+  for (int k = count; k < path.padded_count; ++k) kept[std::size_t(k)] = kept[std::size_t(count - 1)];
 
-/// Both of the above, as integrators that sample BSDFs use it.
-template <class F>
-void add_bsdf_samples(const Scene& scene, SampleBlock& block, Combination combination) {
-  sample_bsdf<F>(scene, block);
-  add_bsdf_hits<F>(scene, block, combination);
+  // In place, because a row never moves down and is read before its place is taken.
+  for (int k = 0; k < path.padded_count; k += lane_count_v<F>) {
+    const Int<F> from = load_lanes<Int<F>>(&kept[k]);
+    const auto move = [&](auto& column) { store_lanes(&column[k], gather(column.data(), from)); };
+    const auto move_from = [&](auto& column, const auto& source) {
+      store_lanes(&column[k], gather(source.data(), from));
+    };
+    move(path.sample);
+    move(path.stream_lo);
+    move(path.stream_hi);
+    move(path.index);
+    move(path.throughput.r);
+    move(path.throughput.g);
+    move(path.throughput.b);
+    move(path.pdf);
+    move(path.eta);
+    move(path.from.x);
+    move(path.from.y);
+    move(path.from.z);
+    move_from(path.ray.origin.x, block.next_ray.origin.x);
+    move_from(path.ray.origin.y, block.next_ray.origin.y);
+    move_from(path.ray.origin.z, block.next_ray.origin.z);
+    move_from(path.ray.direction.x, block.next_ray.direction.x);
+    move_from(path.ray.direction.y, block.next_ray.direction.y);
+    move_from(path.ray.direction.z, block.next_ray.direction.z);
+    store_lanes(&path.ray.t_near[k], F(0));
+    store_lanes(&path.ray.t_far[k], F(std::numeric_limits<float>::infinity()));
+    store_lanes(&path.ray.is_active[k], Int<F>(-1));
+  }
+  for (int k = count; k < path.padded_count; ++k) path.ray.is_active[k] = 0;
+  block.is_in_sample_order = block.is_in_sample_order && count == block.count;
+  block.counts.bsdf_rays += count;
+  block.clock.finish(Stage::following);
 }
 
 }  // namespace etendue

@@ -1,37 +1,76 @@
 // Camera rays: a sample's place on the film, importance-sampled from the pixel filter, and the ray through
-// it.
+// it, by way of a point of the lens where the camera has one.
 #pragma once
 
+#include "base/warp.h"
 #include "integrator/sample_block.h"
 #include "sampler/sampler.h"
 #include "scene/scene.h"
 
+#include <limits>
+
 namespace etendue {
 
-/// The 2-D random numbers of the samples i, i + 1 ... for one consumer.
+/// The 2-D random numbers of the paths i, i + 1 ... for one consumer; the `number`-th of `count`, where it
+/// takes several.
 template <class F>
-Vec2<UInt<F>> sample_bits(const Scene& scene, const SampleBlock& block, int i, std::uint32_t pair) {
-  return sample_2d<F>(scene.sampler, load_lanes<UInt<F>>(&block.stream_lo[i]),
-                      load_lanes<UInt<F>>(&block.stream_hi[i]), load_lanes<UInt<F>>(&block.index[i]), pair);
+Vec2<UInt<F>> sample_bits(const Scene& scene, const PathColumns& path, int i, std::uint32_t pair,
+                          int number = 0, int count = 1) {
+  UInt<F> index = load_lanes<UInt<F>>(&path.index[i]);
+  if (count > 1) index = index * UInt<F>(std::uint32_t(count)) + UInt<F>(std::uint32_t(number));
+  return sample_2d<F>(scene.sampler, load_lanes<UInt<F>>(&path.stream_lo[i]),
+                      load_lanes<UInt<F>>(&path.stream_hi[i]), index, pair);
 }
 
+/// Starts the block's samples, each a path.
 template <class F>
-void camera_rays(const Scene& scene, SampleBlock& block) {
-  for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const Vec2<F> u_film = to_unit_floats<F>(sample_bits<F>(scene, block, i, dimension::film));
-    const F x_px =
-        to_float(load_lanes<Int<F>>(&block.pixel_x[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.x);
-    const F y_px =
-        to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
-    const CameraRay<F> ray = scene.camera.ray(x_px, y_px);
-    store_lanes(block.camera_ray.origin, i, ray.origin);
-    store_lanes(block.camera_ray.direction, i, ray.direction);
-    store_lanes(&block.camera_ray.t_near[i], ray.t_near);
-    store_lanes(&block.camera_ray.t_far[i], ray.t_far);
-    store_lanes(&block.camera_ray.is_active[i], Int<F>(-1));
-  }
-  block.camera_rays += block.count;
+[[gnu::noinline]] void camera_rays(const Scene& scene, SampleBlock& block) {
+  PathColumns& path = block.path;
+  path.count = block.count;
+  path.padded_count = block.padded_count;
+  block.is_in_sample_order = true;
+  const auto for_each_packet = [&](const auto& ray_at) {
+    for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
+      const Vec2<F> u_film = to_unit_floats<F>(sample_bits<F>(scene, path, i, dimension::film));
+      const F x_px =
+          to_float(load_lanes<Int<F>>(&block.pixel_x[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.x);
+      const F y_px =
+          to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
+      if (scene.filter.is_signed())
+        store_lanes(&block.filter_weight[i], scene.filter.sample_weight(u_film.x, u_film.y));
+      const CameraRay<F> ray = ray_at(i, x_px, y_px);
+      store_lanes(path.ray.origin, i, ray.origin);
+      store_lanes(path.ray.direction, i, ray.direction);
+      store_lanes(&path.ray.t_near[i], ray.t_near);
+      store_lanes(&path.ray.t_far[i], ray.t_far);
+      store_lanes(&path.ray.is_active[i], Int<F>(-1));
+      store_lanes(path.throughput, i, Color<F>{F(1), F(1), F(1)});
+      store_lanes(&path.pdf[i], F(std::numeric_limits<float>::infinity()));
+      store_lanes(&path.eta[i], F(1));
+      store_lanes(block.radiance, i, black<F>());
+    }
+  };
+  const Camera& camera = scene.camera;
+  if (camera.has_lens)
+    for_each_packet([&](int i, const F& x_px, const F& y_px) {
+      const Vec2<F> u_lens = to_unit_floats<F>(sample_bits<F>(scene, path, i, dimension::lens));
+      return camera.ray(x_px, y_px, square_to_uniform_disk(u_lens));
+    });
+  else
+    for_each_packet([&](int, const F& x_px, const F& y_px) { return camera.ray(x_px, y_px); });
+  for (int i = 0; i < block.padded_count; ++i) path.sample[i] = i;
+  block.counts.camera_rays += block.count;
   block.clock.finish(Stage::camera_rays);
+}
+
+/// Multiplies each sample's radiance by the weight that belongs to its place under the pixel filter: after
+/// the last look at what radiances are valid. Nothing to do for filters without negative lobes.
+template <class F>
+void weigh_by_filter(const Scene& scene, SampleBlock& block) {
+  if (!scene.filter.is_signed()) return;
+  for (int i = 0; i < block.padded_count; i += lane_count_v<F>)
+    store_lanes(block.radiance, i,
+                load_lanes<F>(block.radiance, i) * load_lanes<F>(&block.filter_weight[i]));
 }
 
 }  // namespace etendue

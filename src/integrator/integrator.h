@@ -1,10 +1,11 @@
 // Which integrator, with its parameters: chosen once a render, by name.
 //
-// To add one: write integrator/NAME.h as a list of stages, add its kind here, its name and its plugin
-// description in integrator.cpp, and its call in run_integrator.h.
+// To add one: if it is a way to trace paths, give it its PathRules in the table in integrator.cpp. Otherwise
+// write integrator/NAME.h as a list of stages, add its kind here, its name and its plugin description in
+// integrator.cpp, and its call in run_integrator.h.
 #pragma once
 
-#include "integrator/mis_weights.h"
+#include "integrator/path_rules.h"
 #include "scenefile/parameters.h"
 
 #include <string_view>
@@ -12,21 +13,25 @@
 
 namespace etendue {
 
-/// light (area sampling), direct (BRDF sampling), average (half of each), mis (both, weighted).
-enum class IntegratorKind { light, direct, average, mis };
+enum class IntegratorKind { path };
 
 struct IntegratorSettings {
-  IntegratorKind kind = IntegratorKind::light;
-  Combination heuristic = Combination::balance;  ///< Of mis: balance or power.
+  std::string_view name = "light";  ///< Of those that integrator_from_name knows.
+  IntegratorKind kind = IntegratorKind::path;
+  PathRules rules;  ///< Of kind path.
+
+  bool needs_lights() const { return kind == IntegratorKind::path; }
 };
 
 const std::vector<Plugin>& integrator_plugins();
-std::string_view integrator_name(IntegratorKind kind);
-std::string_view heuristic_name(Combination heuristic);  ///< "balance" or "power".
+std::string_view heuristic_name(DirectLight direct_light);  ///< "balance", "power"; empty for the others.
 
-/// From the scene file. Throws InputError with the known names.
-IntegratorSettings make_integrator(const Object& description, std::vector<UnreadKey>& unread);
-/// From the command line: a name, its parameters at their defaults; `area` is `light`.
+/// From the scene file, where some names mean another thing in each generation of the family: see
+/// docs/scene_format.md. Throws InputError with the known names.
+IntegratorSettings make_integrator(const Object& description, Dialect dialect,
+                                   std::vector<UnreadKey>& unread);
+/// From the command line: a name, its parameters at their defaults. `direct` is BRDF sampling, `path` is
+/// `path_mis`.
 IntegratorSettings integrator_from_name(std::string_view name);
 
 }  // namespace etendue

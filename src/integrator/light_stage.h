@@ -2,12 +2,11 @@
 #pragma once
 
 #include "base/frame.h"
-#include "bsdf/bsdf.h"
 #include "integrator/camera_stage.h"
 #include "integrator/light_sampling.h"
-#include "integrator/mis_weights.h"
+#include "integrator/path_rules.h"
 #include "integrator/sample_block.h"
-#include "integrator/surface_point.h"
+#include "integrator/vertex.h"
 
 #include <algorithm>
 #include <array>
@@ -15,39 +14,60 @@
 
 namespace etendue {
 
-/// For each sample: a light sample, its shadow segment, and what it adds to the radiance where it is visible.
+/// Which of the light samples of a vertex: number `number` of PathRules::light_samples, or of light `number`.
 template <class F>
-void sample_lights(const Scene& scene, SampleBlock& block, Combination combination) {
-  for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const SurfacePoint<F> surface(scene, block.camera_ray, block.camera_hit, i);
-    if (!any(surface.is_there)) {
+LightSample<F> sample_lights(const Scene& scene, const PathRules& rules, const PathColumns& path,
+                             const Vertex<F>& vertex, int i, int vertex_number, int number) {
+  const std::uint32_t pair = dimension::at_vertex(dimension::light, vertex_number);
+  if (rules.is_every_light) {
+    const Vec2<UInt<F>> u_light = sample_bits<F>(scene, path, i, pair, number, scene.lights.count());
+    return sample_chosen_light<F>(scene, {.light = Int<F>(number), .u_left = u_light.x, .pmf = F(1)}, vertex.position, u_light.y,
+                                  vertex.is_there);
+  }
+  const Vec2<UInt<F>> u_light = sample_bits<F>(scene, path, i, pair, number, rules.light_samples);
+  return sample_lights<F>(scene, vertex.position, u_light, vertex.is_there);
+}
+
+/// For each path: a light sample, its shadow segment, and what it adds to the radiance where it is visible.
+template <class F>
+[[gnu::noinline]] void sample_lights(const Scene& scene, SampleBlock& block, const PathRules& rules,
+                                     int vertex_number, int number) {
+  const PathColumns& path = block.path;
+  const F n_light(float(rules.light_samples)), n_bsdf(float(rules.bsdf_samples));
+  for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
+    const Vertex<F> vertex(scene, path.ray, path.hit, i);
+    if (!any(vertex.is_there)) {
       store_lanes(&block.shadow_is_needed[i], Int<F>(0));
       continue;
     }
-    const Vec2<UInt<F>> u_light = sample_bits<F>(scene, block, i, dimension::light);
-    const LightSample<F> sample = sample_lights<F>(scene, surface.position, u_light, surface.is_there);
+    const LightSample<F> sample = sample_lights<F>(scene, rules, path, vertex, i, vertex_number, number);
 
-    const Frame<F> frame(surface.ns);
-    const Vec3<F> wo_local = frame.local_from_world(surface.wo), wi_local = frame.local_from_world(sample.wi);
-    const Mask<F> is_lit = mask_and(sample.is_facing, surface.reflects_towards(sample.wi));
-    Color<F> reflected = black<F>();
-    for_each_material<F>(
-        scene.materials, surface.material, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
-          const F weight = needs_both_pdfs(combination)
-                               ? mis_weight(combination, select(lanes, sample.pdf_solid_angle(), F(1)),
-                                            bsdf.pdf_solid_angle_(wo_local, wi_local))
-                               : mis_weight(combination, F(1), F(1));
-          const Color<F> f =
-              bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (wi_local.z * weight);
-          reflected = select(lanes, f, reflected);
-        });
+    const Frame<F> frame(vertex.ns);
+    const Vec3<F> wo_local = frame.local_from_world(vertex.wo), wi_local = frame.local_from_world(sample.wi);
+    const Mask<F> is_lit =
+        mask_and(sample.is_there, vertex.is_consistent(wo_local.z, wi_local.z, sample.wi));
+    const F cosine = vertex.foreshortening(wi_local.z);
+    Color<F> scattered = black<F>();
+    for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
+      F weight = F(1);
+      if (needs_both_pdfs(rules.direct_light))
+        weight = mis_weight(rules.direct_light, select(lanes, sample.pdf_solid_angle(), F(1)) * n_light,
+                            bsdf.pdf_solid_angle_(wo_local, wi_local) * n_bsdf);
+      else if (rules.direct_light == DirectLight::half)
+        weight = mis_weight(rules.direct_light, sample.pdf_solid_angle(), F(0));
+      scattered = select(
+          lanes, bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (cosine * weight), scattered);
+    });
+    if (rules.light_samples > 1) scattered = scattered * F(1 / float(rules.light_samples));
+    const Vec3<F> origin = vertex.offset_origin(sample.wi);
+    const Vec3<F> along = sample.end - origin;
+    if (scene.medium) scattered = scattered * scene.medium->transmittance(origin, along);
 
-    store_lanes(block.unshadowed, i, reflected);
+    store_lanes(block.unshadowed, i, scattered * load_lanes<F>(path.throughput, i));
     // Not "greater than 0": a NaN must reach the sum, where it is reported.
-    store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, mask_not(is_black(reflected))));
-    const Vec3<F> origin = surface.offset_origin();
+    store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, mask_not(is_black(scattered))));
     store_lanes(block.shadow_origin, i, origin);
-    store_lanes(block.shadow_direction, i, sample.position - origin);
+    store_lanes(block.shadow_direction, i, along);
     store_lanes(&block.aim[i], sample.light * Int<F>(light_pieces) + sample.piece);
   }
   block.clock.finish(Stage::light_samples);
@@ -67,10 +87,10 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
   const std::int32_t bins_a_quarter = ((aims - 1) >> shift) + 1, used_bins = quarters * bins_a_quarter;
 
   // Rays that are not needed go to a bin behind all others: no branch to mispredict.
-  const int quarter_size = (block.count + quarters - 1) / quarters, aim_shift = piece_shift + shift;
+  const int quarter_size = (block.path.count + quarters - 1) / quarters, aim_shift = piece_shift + shift;
   for (std::int32_t quarter = 0; quarter < quarters; ++quarter) {
-    const int begin = std::min(block.count, quarter * quarter_size);
-    const int end = std::min(block.count, begin + quarter_size);
+    const int begin = std::min(block.path.count, quarter * quarter_size);
+    const int end = std::min(block.path.count, begin + quarter_size);
     const std::int32_t first_bin = quarter * bins_a_quarter;
     for (int i = begin; i < end; ++i) {
       const std::int32_t bin = first_bin + (block.aim[i] >> aim_shift);
@@ -80,12 +100,12 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
   // Two counts, of even and odd samples, so that neighbours in one bin need not wait for each other.
   std::array<std::array<std::int32_t, most_bins + 1>, 2> next{};
   const std::int32_t* bins = block.aim.data();
-  const int even_count = block.count / 2 * 2;
+  const int even_count = block.path.count / 2 * 2;
   for (int i = 0; i < even_count; i += 2) {
     ++next[0][std::size_t(bins[i])];
     ++next[1][std::size_t(bins[i + 1])];
   }
-  if (even_count < block.count) ++next[0][std::size_t(bins[even_count])];
+  if (even_count < block.path.count) ++next[0][std::size_t(bins[even_count])];
   std::int32_t total = 0;
   for (std::int32_t bin = 0; bin <= used_bins; ++bin) {
     if (bin == used_bins) block.shadow_count = total;
@@ -95,7 +115,7 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
     block.order[std::size_t(next[0][std::size_t(bins[i])]++)] = i;
     block.order[std::size_t(next[1][std::size_t(bins[i + 1])]++)] = i + 1;
   }
-  if (even_count < block.count)
+  if (even_count < block.path.count)
     block.order[std::size_t(next[0][std::size_t(bins[even_count])]++)] = even_count;
   block.clock.finish(Stage::aiming);
 }
@@ -103,14 +123,14 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
 /// The same rays in sample order: to show that the order changes no result.
 inline void keep_shadow_rays_in_order(SampleBlock& block) {
   block.shadow_count = 0;
-  for (int i = 0; i < block.count; ++i)
+  for (int i = 0; i < block.path.count; ++i)
     if (block.shadow_is_needed[i]) block.order[std::size_t(block.shadow_count++)] = i;
   block.clock.finish(Stage::aiming);
 }
 
 /// Casts the shadow rays in their order and adds the light samples that nothing hides.
 template <class F>
-void add_unshadowed(const Scene& scene, SampleBlock& block, Coherence coherence) {
+[[gnu::noinline]] void add_unshadowed(const Scene& scene, SampleBlock& block, Coherence coherence) {
   int padded = block.shadow_count;
   while (padded % lane_count_v<F> != 0) block.order[std::size_t(padded++)] = -1;
   const SegmentSpan segments{block.shadow_origin.x.data(),
@@ -122,28 +142,30 @@ void add_unshadowed(const Scene& scene, SampleBlock& block, Coherence coherence)
                              block.order.data(),
                              padded,
                              shadow_segment_end};
-  block.shadow_is_free.fill(0);
+  std::fill_n(block.shadow_is_free.begin(), block.path.padded_count, 0);
   scene.rays.unoccluded(segments, block.shadow_is_free.data(), lane_count_v<F>, coherence);
-  for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
+  for (int i = 0; i < block.path.padded_count; i += lane_count_v<F>) {
     const Mask<F> is_free = load_mask<F>(&block.shadow_is_free[i]);
-    if (!any(is_free)) continue;
-    const Color<F> direct = select(is_free, load_lanes<F>(block.unshadowed, i), black<F>());
-    store_lanes(block.radiance, i, load_lanes<F>(block.radiance, i) + direct);
+    if (any(is_free)) add_radiance<F>(block, i, is_free, load_lanes<F>(block.unshadowed, i));
   }
-  block.shadow_rays += block.shadow_count;
+  block.counts.shadow_rays += block.shadow_count;
   block.clock.finish(Stage::shadow_rays);
 }
 
-/// All of the above, as integrators that sample lights use it.
+/// All of the above: the light that comes straight from lights, by samples of the lights.
 template <class F>
-void add_light_samples(const Scene& scene, SampleBlock& block, Combination combination, bool is_reordering) {
-  sample_lights<F>(scene, block, combination);
-  if (is_reordering)
-    aim_shadow_rays(scene, block);
-  else
-    keep_shadow_rays_in_order(block);
-  const bool is_coherent = is_reordering && scene.lights.are_aimed_packets_coherent();
-  add_unshadowed<F>(scene, block, is_coherent ? Coherence::coherent : Coherence::incoherent);
+void add_light_samples(const Scene& scene, SampleBlock& block, const PathRules& rules, int vertex,
+                       bool is_reordering) {
+  const int samples = rules.is_every_light ? scene.lights.count() : rules.light_samples;
+  for (int number = 0; number < samples; ++number) {
+    sample_lights<F>(scene, block, rules, vertex, number);
+    if (is_reordering)
+      aim_shadow_rays(scene, block);
+    else
+      keep_shadow_rays_in_order(block);
+    const bool is_coherent = is_reordering && scene.lights.are_aimed_packets_coherent();
+    add_unshadowed<F>(scene, block, is_coherent ? Coherence::coherent : Coherence::incoherent);
+  }
 }
 
 }  // namespace etendue

@@ -1,13 +1,12 @@
 // A block of samples as structure-of-arrays buffers that stay in the cache; integrators' stages pass over it.
 #pragma once
 
-#include "base/color.h"
-#include "base/mask.h"
-#include "base/vec.h"
+#include "base/lane_vec.h"
+#include "integrator/block_counts.h"
 
 #include <array>
-#include <chrono>
 #include <cstdint>
+#include <functional>
 
 namespace etendue {
 
@@ -44,36 +43,6 @@ void store_lanes(ColorColumn& column, int i, const Color<F>& c) {
   store_lanes(&column.b[i], c.b);
 }
 
-/// Where the time goes, for benchmarks: a stage ends where the next begins.
-enum class Stage {
-  camera_rays,
-  closest_hits,
-  emission,
-  light_samples,
-  aiming,
-  shadow_rays,
-  bsdf_samples,
-  bsdf_rays,
-  sums
-};
-inline constexpr std::array stage_names{"camera_rays", "closest_hits", "emission",  "light_samples", "aiming",
-                                        "shadow_rays", "bsdf_samples", "bsdf_rays", "sums"};
-
-class StageClock {
- public:
-  void start() { last_ = std::chrono::steady_clock::now(); }
-  void finish(Stage stage) {
-    const auto now = std::chrono::steady_clock::now();
-    seconds_[std::size_t(stage)] += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-  const std::array<double, stage_names.size()>& seconds() const { return seconds_; }
-
- private:
-  std::chrono::steady_clock::time_point last_{};
-  std::array<double, stage_names.size()> seconds_{};
-};
-
 /// Rays as they are cast.
 struct RayColumns {
   Vec3Column origin, direction;  ///< The direction is unit.
@@ -88,37 +57,65 @@ struct HitColumns {
   Column<std::int32_t> geometry, primitive;
 };
 
-struct SampleBlock {
-  int count = 0;         ///< Samples.
-  int padded_count = 0;  ///< Up to whole packets of the widest kind; the surplus repeats the last sample.
-  bool is_one_pixel = false;
+/// The paths that are still alive, one a row, as they arrive at a vertex.
+struct PathColumns {
+  int count = 0;         ///< Paths.
+  int padded_count = 0;  ///< Up to whole packets of the widest kind.
 
-  // Who the sample is.
-  Column<std::int32_t> pixel_x, pixel_y;
+  Column<std::int32_t> sample;  ///< The row of the sample that the path belongs to.
   Column<std::uint32_t> stream_lo, stream_hi, index;
 
-  // What the camera sees: the surface that light and BSDF samples start from.
-  RayColumns camera_ray;
-  HitColumns camera_hit;
+  RayColumns ray;  ///< The ray that arrives, and what it hits.
+  HitColumns hit;
+  ColorColumn throughput;  ///< Product of f cos / pdf, roulette included.
+  Column<float> pdf;       ///< Of the ray's direction, 1/sr; infinity: the camera's, or a Dirac delta's.
+  Column<float> eta;       ///< Refractive index here over that at the camera.
+  Vec3Column from;         ///< The vertex where the ray was sampled, m.
+};
+
+struct SampleBlock {
+  // The samples of a block, and what becomes of them; the surplus of the padding repeats the last sample.
+  int count = 0;
+  int padded_count = 0;
+  bool is_one_pixel = false;
+  Column<std::int32_t> pixel_x, pixel_y;
+  Column<float> filter_weight;  ///< Set and read only where the pixel filter has negative lobes.
+  ColorColumn radiance;
+
+  PathColumns path;
+  bool is_in_sample_order = true;  ///< Row i of `path` is sample i: no path has been left out yet.
 
   // A light sample: its shadow segment (t from 0 to 1), and what it adds where nothing hides it.
   Vec3Column shadow_origin, shadow_direction;
   ColorColumn unshadowed;
   Column<std::int32_t> shadow_is_needed, shadow_is_free;
   Column<std::int32_t> aim;    ///< light * light_pieces + piece; after aiming, the bin.
-  Column<std::int32_t> order;  ///< Of tracing: sample numbers, then -1.
-  int shadow_count = 0;
+  Column<std::int32_t> order;  ///< Of tracing: rows of `path`, then -1.
+  int shadow_count = 0;        ///< 0 where no light has been sampled since the last vertex.
 
-  // A BSDF sample: what its ray brings is weighted by `throughput`.
-  RayColumns bsdf_ray;
-  HitColumns bsdf_hit;
-  ColorColumn throughput;
-  Column<float> pdf_bsdf;  ///< 1/sr
+  RayColumns next_ray;  ///< Along the direction that the BSDF was sampled for.
 
-  ColorColumn radiance;
-
-  std::int64_t camera_rays = 0, shadow_rays = 0, bsdf_rays = 0;
+  BlockCounts counts;
   StageClock clock;
+  /// Called with the number of each vertex once its samples have been taken, where set: benchmarks and replays
+  /// look on.
+  const std::function<void(const SampleBlock&, int vertex)>* on_vertex = nullptr;
 };
+
+/// Adds to the radiance of the samples that the paths i, i + 1 ... belong to.
+template <class F>
+void add_radiance(SampleBlock& block, int i, const Mask<F>& m, const Color<F>& added) {
+  if (block.is_in_sample_order) {
+    store_lanes(block.radiance, i, load_lanes<F>(block.radiance, i) + select(m, added, black<F>()));
+    return;
+  }
+  const Int<F> sample = load_lanes<Int<F>>(&block.path.sample[i]);
+  const auto add = [&](float* channel, const F& value) {
+    scatter<F>(channel, sample, m, gather(channel, sample) + value);
+  };
+  add(block.radiance.r.data(), added.r);
+  add(block.radiance.g.data(), added.g);
+  add(block.radiance.b.data(), added.b);
+}
 
 }  // namespace etendue

@@ -30,7 +30,7 @@ void set_invalid_aside(TileJob& job, SampleBlock& block, int samples_per_replica
       ++job.invalid_samples;
       if (job.invalid->size() < most_invalid_noted)
         job.invalid->push_back({block.pixel_x[s], block.pixel_y[s],
-                                pixels.sample_of(s) / samples_per_replicate, block.index[s], sample});
+                                pixels.sample_of(s) / samples_per_replicate, pixels.sample_of(s) % samples_per_replicate, sample});
     }
   }
 }
@@ -46,6 +46,7 @@ void render_tile(TileJob& job) {
     }
     run_integrator<F>(job.settings->integrator, *job.scene, block, job.settings->is_reordering);
     set_invalid_aside(job, block, pixels.samples_per_replicate(), pixels);
+    weigh_by_filter<F>(*job.scene, block);
     pixels.add_to_film(block, *job.film);
     job.samples = pixels.samples_in_film();
     block.clock.finish(Stage::sums);

@@ -22,7 +22,7 @@ struct TileJob {
   const std::atomic<bool>* stop = nullptr;        ///< Asked between blocks.
   std::int64_t samples = 0, invalid_samples = 0;  ///< `samples`: of pixels that are whole.
   bool is_stopped = false;                        ///< Some pixels of the tile were not rendered.
-  /// Called after each block, where set: benchmarks look at the rays.
+  /// Called after each block with what its samples have become, where set.
   const std::function<void(const SampleBlock&)>* on_block = nullptr;
 };
 

@@ -46,9 +46,9 @@ class PixelBlocks {
       const int last = block.count - 1;
       block.pixel_x[i] = block.pixel_x[last];
       block.pixel_y[i] = block.pixel_y[last];
-      block.stream_lo[i] = block.stream_lo[last];
-      block.stream_hi[i] = block.stream_hi[last];
-      block.index[i] = block.index[last];
+      block.path.stream_lo[i] = block.path.stream_lo[last];
+      block.path.stream_hi[i] = block.path.stream_hi[last];
+      block.path.index[i] = block.path.index[last];
     }
     return true;
   }
@@ -115,9 +115,9 @@ class PixelBlocks {
         const int i = block.count + k;
         block.pixel_x[i] = pixel.x;
         block.pixel_y[i] = pixel.y;
-        block.stream_lo[i] = std::uint32_t(stream);
-        block.stream_hi[i] = std::uint32_t(stream >> 32);
-        block.index[i] = std::uint32_t(index + k);
+        block.path.stream_lo[i] = std::uint32_t(stream);
+        block.path.stream_hi[i] = std::uint32_t(stream >> 32);
+        block.path.index[i] = std::uint32_t(index + k);
       }
       block.count += count;
     });

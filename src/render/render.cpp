@@ -94,9 +94,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
 
   for (const Worker& worker : workers) {
     result.counts.samples += worker.samples;
-    result.counts.camera_rays += worker.block->camera_rays;
-    result.counts.shadow_rays += worker.block->shadow_rays;
-    result.counts.bsdf_rays += worker.block->bsdf_rays;
+    result.counts += worker.block->counts;
     result.counts.invalid_samples += worker.invalid_samples;
     result.invalid.insert(result.invalid.end(), worker.invalid.begin(), worker.invalid.end());
   }

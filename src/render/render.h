@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/film.h"
+#include "integrator/block_counts.h"
 #include "integrator/integrator.h"
 #include "render/isa.h"
 #include "scene/scene.h"
@@ -35,8 +36,11 @@ struct InvalidSample {
 
 inline constexpr std::size_t most_invalid_noted = 16;
 
-struct RenderCounts {
-  std::int64_t samples = 0, camera_rays = 0, shadow_rays = 0, bsdf_rays = 0, invalid_samples = 0;
+struct RenderCounts : BlockCounts {
+  std::int64_t samples = 0, invalid_samples = 0;
+
+  /// The mean fraction of the lanes of a packet that hold a living path.
+  double lane_occupancy() const { return lanes > 0 ? double(paths) / double(lanes) : 0; }
 };
 
 struct RenderResult {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace etendue {
 
@@ -17,33 +18,37 @@ struct SampleId {
 /// What one sample computed, in the order of computing. Lengths in m, radiance in W/(m^2 sr), directions
 /// unit.
 struct SampleTrace {
-  struct Hit {
-    Vec3f position, ng, ns;
+  struct Surface {
+    Vec3f ng, ns;
     std::int32_t geometry, primitive, material, light;  ///< light -1: it is none.
   };
   struct LightSample {
     std::int32_t light;
-    Vec3f position;  ///< On the light.
+    Vec3f end;  ///< Of the shadow segment: on the light, or beyond the scene.
     Colorf radiance_over_pdf;
-    float pdf_solid_angle;  ///< 1/sr, the choice of the light included; 0: the light faces away.
-    Colorf unshadowed;      ///< What it adds where nothing hides it: BSDF, cosine and weight included.
+    float pdf_solid_angle;  ///< 1/sr, the choice of the light included; 0: no sample. Infinite: a Dirac delta.
+    Colorf unshadowed;      ///< What it adds where nothing hides it: BSDF, cosine, weight and path included.
     bool is_shadow_ray_cast, is_visible;
   };
   struct BsdfSample {
-    bool is_ray_cast;  ///< Not where the sample reflects nothing.
+    bool is_followed;  ///< Not where nothing is scattered, or where roulette ended the path.
     Vec3f direction;
-    Colorf throughput;      ///< f cos / pdf
-    float pdf_solid_angle;  ///< 1/sr
-    float distance;         ///< To what the ray hits; infinite where that is nothing.
-    std::int32_t light;     ///< That it hits; -1: none.
+    Colorf throughput;      ///< Of the path, with it.
+    float pdf_solid_angle;  ///< 1/sr; infinite: a Dirac delta.
+  };
+  /// A place that the path came to.
+  struct Vertex {
+    enum class Kind { surface, medium, nothing } kind;
+    Vec3f position;                           ///< Not of nothing.
+    std::optional<Surface> surface;
+    std::optional<LightSample> light_sample;  ///< The last, where the integrator takes several.
+    std::optional<BsdfSample> bsdf_sample;    ///< Likewise.
+    Colorf radiance;                          ///< Of the path, up to and with this vertex.
   };
 
   float x_px, y_px;  ///< On the film, in pixels from the upper left.
   Vec3f ray_origin, ray_direction;
-  std::optional<Hit> hit;                   ///< What the camera sees.
-  Colorf emission;                          ///< That the camera sees.
-  std::optional<LightSample> light_sample;  ///< Where the integrator takes one and there is a surface.
-  std::optional<BsdfSample> bsdf_sample;    ///< Likewise.
+  std::vector<Vertex> vertices;  ///< Of integrators that trace paths.
   Colorf radiance;  ///< The sample's, as computed: not finite or negative where that is what went wrong.
 };
 

@@ -23,10 +23,19 @@ SamplerKind sampler_from_name(std::string_view name);
 std::string_view sampler_name(SamplerKind kind);
 
 /// Pairs of dimensions, by consumer. A consumer has the same pair in every integrator, so that integrators
-/// can be compared sample by sample.
+/// can be compared sample by sample. `choice` serves what a path decides on its way: Russian roulette and the
+/// length of its free flight.
 namespace dimension {
-inline constexpr std::uint32_t film = 0, light = 1, bsdf = 2;
+inline constexpr std::uint32_t film = 0, light = 1, bsdf = 2, choice = 3;
+inline constexpr std::uint32_t vertex_stride = 4;
+/// Out of the way of any path's vertices.
+inline constexpr std::uint32_t lens = 0x40000000;
+
+/// The pair of a consumer at a vertex of a path; vertex 0 is what the camera sees.
+constexpr std::uint32_t at_vertex(std::uint32_t pair, std::uint32_t vertex) {
+  return pair + vertex_stride * vertex;
 }
+}  // namespace dimension
 
 /// The 64-bit key of one (seed, pixel, replicate); its halves seed the lanes.
 inline std::uint64_t sample_stream(std::uint64_t seed, int x, int y, std::int64_t replicate) {

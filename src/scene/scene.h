@@ -7,9 +7,10 @@
 #include "geometry/geometry.h"
 #include "geometry/raycast.h"
 #include "light/light.h"
+#include "medium/homogeneous.h"
 #include "sampler/sampler.h"
 
-#include <string>
+#include <optional>
 #include <vector>
 
 namespace etendue {
@@ -20,7 +21,9 @@ struct Scene {
   Geometry geometry;
   RayCaster rays;  ///< Over `geometry`.
   std::vector<Bsdf> materials;
+  bool has_textures = false;  ///< Some material needs uv.
   Lights lights;
+  std::optional<HomogeneousMedium> medium;
   SamplerKind sampler;
 };
 

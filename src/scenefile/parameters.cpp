@@ -34,6 +34,8 @@ TypeNames names_of(Type type) {
       return {"a vector", "vector"};
     case Type::transform:
       return {"a transform", "transform"};
+    case Type::point2:
+      return {"two numbers", "point"};
   }
   throw std::logic_error("a parameter of no type");
 }
@@ -67,6 +69,10 @@ Property::Value parse_default(const Parameter& parameter) {
       case Type::vector: {
         const std::vector<double> numbers = parse_reals(text, {}, {3});
         return Vec3<double>{numbers[0], numbers[1], numbers[2]};
+      }
+      case Type::point2: {
+        const std::vector<double> numbers = parse_reals(text, {}, {2});
+        return Vec2<double>{numbers[0], numbers[1]};
       }
     }
   } catch (const InputError& error) {
@@ -122,6 +128,12 @@ Property::Value convert(const Property& property, const Parameter& parameter, co
     case Type::transform:
       if (std::holds_alternative<Transform>(value)) return value;
       break;
+    case Type::point2:
+      if (std::holds_alternative<Vec2<double>>(value)) return value;
+      if (std::holds_alternative<Vec3<double>>(value))
+        throw InputError(property.value_location,
+                         fmt::format("'{}' of {} needs 2 numbers, found 3", property.name, label(object)));
+      break;
   }
   throw InputError(property.value_location,
                    fmt::format("'{}' of {} must be {}, not a <{}>", property.name, label(object),
@@ -140,13 +152,7 @@ std::vector<std::string> names_of(const std::vector<T>& named) {
 
 Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<UnreadKey>& unread)
     : object_(&object) {
-  for (const Object& child : object.children)
-    if (std::find(plugin.child_families.begin(), plugin.child_families.end(), child.family) ==
-        plugin.child_families.end())
-      throw InputError(child.location,
-                       fmt::format("<{}> has no place inside <{}>", child.family, object.family),
-                       plugin.child_families.empty() ? "nothing may stand in there but its keys"
-                                                     : known_names(child.family, plugin.child_families));
+  read_children(plugin);
   for (const Property& property : object.properties) {
     const auto parameter =
         std::find_if(plugin.parameters.begin(), plugin.parameters.end(),
@@ -160,7 +166,10 @@ Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<U
     }
     if (is_stated(property.name))
       throw InputError(property.name_location,
-                       fmt::format("'{}' of {} is stated twice", property.name, label(object)));
+                       texture(property.name)
+                           ? fmt::format("'{}' of {} is stated twice: as a value and as a texture",
+                                         property.name, label(object))
+                           : fmt::format("'{}' of {} is stated twice", property.name, label(object)));
     entries_.push_back({&*parameter, convert(property, *parameter, object), &property});
   }
   for (const Parameter& parameter : plugin.parameters) {
@@ -171,6 +180,37 @@ Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<U
                        element_to_write(parameter));
     if (!parameter.default_value.empty()) entries_.push_back({&parameter, parse_default(parameter), nullptr});
   }
+}
+
+void Parameters::read_children(const Plugin& plugin) {
+  const bool takes_textures = std::any_of(plugin.parameters.begin(), plugin.parameters.end(),
+                                          [](const Parameter& p) { return p.accepts_texture; });
+  std::vector<std::string> families = plugin.child_families;
+  if (takes_textures) families.emplace_back("texture");
+  for (const Object& child : object_->children) {
+    if (std::find(families.begin(), families.end(), child.family) == families.end())
+      throw InputError(
+          child.location, fmt::format("<{}> has no place inside <{}>", child.family, object_->family),
+          families.empty() ? "nothing may stand in there but its keys" : known_names(child.family, families));
+    if (takes_textures && child.family == "texture") add_texture(child, plugin);
+  }
+}
+
+void Parameters::add_texture(const Object& texture, const Plugin& plugin) {
+  std::vector<std::string> textured;
+  for (const Parameter& parameter : plugin.parameters)
+    if (parameter.accepts_texture) textured.push_back(parameter.name);
+  if (texture.name.empty())
+    throw InputError(texture.location, "this <texture> does not say which parameter it stands for",
+                     fmt::format("write <texture type=\"{}\" name=\"{}\">", texture.type, textured.front()));
+  if (std::find(textured.begin(), textured.end(), texture.name) == textured.end())
+    throw InputError(texture.location,
+                     fmt::format("no parameter '{}' of {} takes a texture", texture.name, label(*object_)),
+                     known_names(texture.name, textured));
+  if (is_stated(texture.name))
+    throw InputError(texture.location,
+                     fmt::format("a second texture for '{}' of {}", texture.name, label(*object_)));
+  textures_.push_back(&texture);
 }
 
 const Parameters::Entry* Parameters::find(std::string_view name) const {
@@ -184,7 +224,9 @@ const Property::Value& Parameters::value(std::string_view name) const {
   throw std::logic_error(fmt::format("{} has no value '{}'", label(*object_), name));
 }
 
-bool Parameters::is_stated(std::string_view name) const { return find(name) && find(name)->stated; }
+bool Parameters::is_stated(std::string_view name) const {
+  return texture(name) || (find(name) && find(name)->stated);
+}
 bool Parameters::has(std::string_view name) const { return find(name) != nullptr; }
 bool Parameters::boolean(std::string_view name) const { return std::get<bool>(value(name)); }
 int Parameters::integer(std::string_view name) const { return std::get<int>(value(name)); }
@@ -194,8 +236,16 @@ Colorf Parameters::color(std::string_view name) const { return std::get<Colorf>(
 Vec3<double> Parameters::point(std::string_view name) const { return std::get<Vec3<double>>(value(name)); }
 Vec3<double> Parameters::vector(std::string_view name) const { return std::get<Vec3<double>>(value(name)); }
 Transform Parameters::transform(std::string_view name) const { return std::get<Transform>(value(name)); }
+Vec2<double> Parameters::point2(std::string_view name) const { return std::get<Vec2<double>>(value(name)); }
+
+const Object* Parameters::texture(std::string_view name) const {
+  for (const Object* texture : textures_)
+    if (texture->name == name) return texture;
+  return nullptr;
+}
 
 Location Parameters::location(std::string_view name) const {
+  if (const Object* there = texture(name)) return there->location;
   return is_stated(name) ? find(name)->stated->value_location : object_->location;
 }
 

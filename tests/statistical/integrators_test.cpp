@@ -21,15 +21,15 @@ namespace {
 
 struct Method {
   const char* name;
-  IntegratorKind kind;
-  Combination heuristic;
+  const char* integrator;
+  DirectLight heuristic;
 };
 /// Each is held against the first.
-constexpr Method methods[]{{"mis balance", IntegratorKind::mis, Combination::balance},
-                           {"light", IntegratorKind::light, Combination::balance},
-                           {"direct", IntegratorKind::direct, Combination::balance},
-                           {"average", IntegratorKind::average, Combination::balance},
-                           {"mis power", IntegratorKind::mis, Combination::power}};
+constexpr Method methods[]{{"mis balance", "mis", DirectLight::balance},
+                           {"light", "light", DirectLight::balance},
+                           {"direct", "direct", DirectLight::balance},
+                           {"average", "average", DirectLight::balance},
+                           {"mis power", "mis", DirectLight::power}};
 constexpr int block_px = 16;
 
 /// The mean over a block of pixels, which are independent, as a sample whose standard error and degrees of
@@ -59,8 +59,8 @@ void expect_equal_means(const Scene& scene, int samples_per_pixel, double level,
   for (const Method& method : methods) {
     // Another seed for each: the test wants independent estimates. BSDF sampling alone finds a small light so
     // rarely that fewer samples would not be normally distributed.
-    const int samples = method.kind == IntegratorKind::direct ? 4 * samples_per_pixel : samples_per_pixel;
-    RenderResult result = render(scene, render_settings(method.kind, samples, 16, ++seed, method.heuristic));
+    const int samples = method.integrator == std::string("direct") ? 4 * samples_per_pixel : samples_per_pixel;
+    RenderResult result = render(scene, render_settings(method.integrator, samples, 16, ++seed, method.heuristic));
     EXPECT_EQ(result.counts.invalid_samples, 0) << what << ", " << method.name;
     films.push_back(std::move(result.film));
   }
@@ -159,7 +159,7 @@ TEST(Bits, AreTheSameForAnyNumberOfThreadsAndAgain) {
   const LoadedScene loaded = everything_scene(40);
   for (const Isa isa : available_isas())
     for (const int samples : {1, 48, 1100}) {  // Many pixels a block, few, and more than one block a pixel.
-      RenderSettings settings = render_settings(IntegratorKind::mis, samples, samples == 1 ? 1 : 4, 5);
+      RenderSettings settings = render_settings("mis", samples, samples == 1 ? 1 : 4, 5);
       settings.isa = isa;
       settings.threads = 1;
       const Film once = render(loaded.scene, settings).film;
@@ -174,7 +174,7 @@ TEST(Bits, AreTheSameForAnyNumberOfThreadsAndAgain) {
 
 TEST(Bits, AreTheSameForTilesInAnyOrder) {
   const LoadedScene loaded = everything_scene(80);
-  const RenderSettings settings = render_settings(IntegratorKind::average, 16, 4, 5);
+  const RenderSettings settings = render_settings("average", 16, 4, 5);
   const Film film = render(loaded.scene, settings).film;
   Film backwards(80, 80);
   const auto block = std::make_unique<SampleBlock>();
@@ -197,8 +197,8 @@ TEST(Bits, AreTheSameForTilesInAnyOrder) {
 
 TEST(Bits, DependOnTheSeed) {
   const LoadedScene loaded = everything_scene();
-  EXPECT_GT(differing_pixels(render(loaded.scene, render_settings(IntegratorKind::light, 8, 2, 1)).film,
-                             render(loaded.scene, render_settings(IntegratorKind::light, 8, 2, 2)).film),
+  EXPECT_GT(differing_pixels(render(loaded.scene, render_settings("light", 8, 2, 1)).film,
+                             render(loaded.scene, render_settings("light", 8, 2, 2)).film),
             2000);
 }
 
@@ -209,7 +209,7 @@ double relative_difference_of_means(const Film& a, const Film& b) {
 TEST(Bits, DoNotDependOnTheOrderOfShadowRays) {
   const LoadedScene loaded = everything_scene();
   for (const Isa isa : available_isas()) {
-    RenderSettings settings = render_settings(IntegratorKind::light, 256, 4, 6);
+    RenderSettings settings = render_settings("light", 256, 4, 6);
     settings.isa = isa;
     const Film aimed = render(loaded.scene, settings).film;
     settings.is_reordering = false;
@@ -221,7 +221,7 @@ TEST(Bits, WideKernelsFollowTheScalarOneSampleBySample) {
   // The same random numbers: what is left is rounding, which now and then turns a hit into a miss.
   const LoadedScene loaded = everything_scene();
   for (const Method& method : methods) {
-    RenderSettings settings = render_settings(method.kind, 64, 4, 8, method.heuristic);
+    RenderSettings settings = render_settings(method.integrator, 64, 4, 8, method.heuristic);
     settings.isa = Isa::scalar;
     const Film scalar = render(loaded.scene, settings).film;
     for (const Isa isa : available_isas()) {

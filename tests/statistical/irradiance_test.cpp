@@ -21,14 +21,14 @@ constexpr int family_size = 150;  // At least as many tests as are made below.
 
 struct Method {
   const char* name;
-  IntegratorKind kind;
-  Combination heuristic;
+  const char* integrator;
+  DirectLight heuristic;
 };
-constexpr Method methods[]{{"light", IntegratorKind::light, Combination::balance},
-                           {"direct", IntegratorKind::direct, Combination::balance},
-                           {"average", IntegratorKind::average, Combination::balance},
-                           {"mis balance", IntegratorKind::mis, Combination::balance},
-                           {"mis power", IntegratorKind::mis, Combination::power}};
+constexpr Method methods[]{{"light", "light", DirectLight::balance},
+                           {"direct", "direct", DirectLight::balance},
+                           {"average", "average", DirectLight::balance},
+                           {"mis balance", "mis", DirectLight::balance},
+                           {"mis power", "mis", DirectLight::power}};
 
 /// All pixels see one point (up to 1e-5 of the distance): each is one more independent estimate.
 RunningStatistics statistics_of_pixels(const Film& film) {
@@ -51,7 +51,7 @@ LoadedScene floor_scene(const std::string& lights, const std::vector<SceneFile>&
 
 void expect_radiance(const Scene& scene, double exact, const std::string& what) {
   for (const Method& method : methods) {
-    const RenderResult result = render(scene, render_settings(method.kind, 1024, 4, 7, method.heuristic));
+    const RenderResult result = render(scene, render_settings(method.integrator, 1024, 4, 7, method.heuristic));
     EXPECT_EQ(result.counts.invalid_samples, 0);
     const RunningStatistics radiance = statistics_of_pixels(result.film);
     const MeanTest test = t_test(radiance, exact, exact * exact * 1e-12);
@@ -171,7 +171,7 @@ TEST(Furnace, ASphereAndABoxInsideAConstantLightShowTheirAlbedo) {
                                                {furnace, box});
     expect_radiance(loaded.scene, albedo * radiance, "furnace");
     // BSDF sampling has no variance here: every ray meets the light with weight albedo.
-    const RenderResult result = render(loaded.scene, render_settings(IntegratorKind::direct, 256, 4, 1));
+    const RenderResult result = render(loaded.scene, render_settings("direct", 256, 4, 1));
     for (int i = 0; i < side_px; ++i) EXPECT_NEAR(result.film.at(i, i).mean.r / (albedo * radiance), 1, 1e-6);
   }
 }
@@ -182,7 +182,7 @@ TEST(Furnace, WhatTheCameraSeesOfALightIsItsRadianceAndNothingFromBehind) {
         camera_xml({0.2, 0.1, 3}, {0, 0, 0}, 0.1, side_px, "independent") +
         rectangle_xml({0, 0, 0}, {1, 0, 0}, {0, side, 0}, light_xml(radiance) + diffuse_xml(0)));
     const Color<double> mean =
-        render(loaded.scene, render_settings(IntegratorKind::mis, 4, 2, 1)).film.mean();
+        render(loaded.scene, render_settings("mis", 4, 2, 1)).film.mean();
     EXPECT_EQ(mean.r, side > 0 ? radiance : 0);
   }
 }

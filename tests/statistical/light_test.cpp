@@ -237,16 +237,15 @@ TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
   RunningStatistics irradiance;
   for (int i = 0; i < samples; ++i) {
     const LightSample<float> sample = sample_lights<float>(scene, {0, 0, 0}, random.square(), true);
-    irradiance.add(sample.is_facing ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
-    if (!sample.is_facing) continue;
+    irradiance.add(sample.is_there ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
+    if (!sample.is_there) continue;
     const std::int32_t light = sample.light;
-    const Vec3f ng = light == 1   ? Vec3f(normalize(sample.position - Vec3f{1, 2, 1}))
+    const Vec3f ng = light == 1   ? Vec3f(normalize(sample.end - Vec3f{1, 2, 1}))
                      : light == 0 ? Vec3f{float(normalize(cross(half_u, half_v)).x),
                                           float(normalize(cross(half_u, half_v)).y),
                                           float(normalize(cross(half_u, half_v)).z)}
                                   : Vec3f{1, 0, 0};
-    const float pdf =
-        light_pdf_solid_angle<float>(scene, light, {0, 0, 0}, sample.position, ng, sample.wi, true);
+    const float pdf = light_pdf_solid_angle<float>(scene, light, {0, 0, 0}, sample.end, ng, sample.wi, true);
     ASSERT_NEAR(sample.pdf_solid_angle() / pdf, 1, 2e-4) << "light " << light;
   }
   const MeanTest test = t_test(irradiance, exact);

@@ -16,6 +16,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -167,6 +168,28 @@ TEST(Sampler, PairsPixelsReplicatesAndNeighbourIndicesAreUncorrelated) {
         },
         name + ": seeds");
   }
+}
+
+TEST(Sampler, EveryConsumerAtEveryVertexHasAPairOfItsOwn) {
+  std::set<std::uint32_t> pairs{dimension::lens};
+  constexpr std::uint32_t vertices = 10000;
+  for (std::uint32_t vertex = 0; vertex < vertices; ++vertex)
+    for (const std::uint32_t consumer :
+         {dimension::film, dimension::light, dimension::bsdf, dimension::choice})
+      pairs.insert(dimension::at_vertex(consumer, vertex));
+  EXPECT_EQ(pairs.size(), 4 * vertices + 1);
+
+  const auto stream_of = [](int i) { return sample_stream(6, i % 64, i / 64 % 64, i / 4096); };
+  for (const SamplerKind kind : samplers)
+    for (const std::uint32_t other :
+         {dimension::film, dimension::light, dimension::bsdf, dimension::at_vertex(dimension::bsdf, 1),
+          dimension::at_vertex(dimension::light, 30)})
+      expect_independent(
+          [&](int i) {
+            return std::pair{point(kind, stream_of(i), 1, dimension::lens).x,
+                             point(kind, stream_of(i), 1, other).x};
+          },
+          std::string(sampler_name(kind)) + ": lens and pair " + std::to_string(other));
 }
 
 TEST(Sampler, PairsAreUncorrelatedWithinAReplicateOfSobolPoints) {

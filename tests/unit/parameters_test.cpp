@@ -129,6 +129,86 @@ TEST_F(ParametersTest, DemandsRequiredOnesAndEachOnce) {
               HasSubstr("'n' of bsdf 'phong' is stated twice"));
 }
 
+/// Two parameters that take textures, one of them required, one of two numbers, and one of neither kind.
+const Plugin textured{"bsdf",
+                      "cloth",
+                      "a test",
+                      {{"albedo", Type::color, "", "", "reflectance", true, true},
+                       {"roughness", Type::color, "0.1", "", "roughness", false, true},
+                       {"delta", Type::point2, "0, 0.5", "", "a place"},
+                       {"n", Type::real, "20", "", "exponent"}},
+                      {}};
+
+class Textures : public ParametersTest {
+ protected:
+  Object with(std::vector<Property> properties, std::vector<std::string> texture_names) const {
+    Object made = object(std::move(properties));
+    for (const std::string& name : texture_names) {
+      const Location where{std::make_shared<SourceFile>(SourceFile{"s.xml", "texture " + name}), 0, 7};
+      made.children.push_back({"texture", "bitmap", name, where, where, {}, {}});
+    }
+    return made;
+  }
+  std::string error_of(const Object& stated, const Plugin& accepted = textured) const {
+    std::vector<UnreadKey> unread;
+    try {
+      const Parameters parameters(stated, accepted, unread);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(Textures, StandForAParameterRequiredOrNot) {
+  const Object stated = with({}, {"roughness", "albedo"});
+  const Parameters p(stated, textured, unread_);
+  EXPECT_EQ(p.texture("roughness"), &stated.children[0]);
+  EXPECT_EQ(p.texture("albedo"), &stated.children[1]);
+  EXPECT_EQ(p.texture("n"), nullptr);
+  EXPECT_TRUE(p.is_stated("albedo"));
+  EXPECT_FALSE(p.has("roughness")) << "a default beside a texture could be taken for the value";
+  EXPECT_THROW(p.color("roughness"), std::logic_error);
+  EXPECT_EQ(p.location("albedo").source, stated.children[1].location.source);
+  EXPECT_TRUE(unread_.empty());
+}
+
+TEST_F(Textures, AreNoneWhereAValueIsStated) {
+  const Object stated = with({property("albedo", "color", Colorf{1, 0, 0})}, {});
+  const Parameters p(stated, textured, unread_);
+  EXPECT_EQ(p.texture("albedo"), nullptr);
+  EXPECT_EQ(p.color("albedo"), (Colorf{1, 0, 0}));
+  EXPECT_EQ(p.color("roughness"), (Colorf{0.1f, 0.1f, 0.1f}));
+}
+
+TEST_F(Textures, AreRefusedWhereTheyStandForNothing) {
+  EXPECT_EQ(error_of(with({}, {"albdeo"})),
+            "s.xml:1:1: no parameter 'albdeo' of bsdf 'phong' takes a texture\n"
+            "  1 | texture albdeo\n"
+            "    | ^~~~~~~\n"
+            "did you mean 'albedo'? known: albedo, roughness");
+  EXPECT_THAT(error_of(with({}, {"n"})), HasSubstr("no parameter 'n' of bsdf 'phong' takes a texture"));
+  EXPECT_THAT(error_of(with({}, {""})), HasSubstr("write <texture type=\"bitmap\" name=\"albedo\">"));
+  EXPECT_THAT(error_of(with({}, {"kd"}), plugin), HasSubstr("<texture> has no place inside <bsdf>"));
+}
+
+TEST_F(Textures, AreRefusedBesideAnotherStatement) {
+  EXPECT_THAT(error_of(with({}, {"albedo", "albedo"})), HasSubstr("a second texture for 'albedo'"));
+  EXPECT_THAT(error_of(with({property("albedo", "color", Colorf{1, 0, 0})}, {"albedo"})),
+              HasSubstr("'albedo' of bsdf 'phong' is stated twice: as a value and as a texture"));
+}
+
+TEST_F(Textures, TwoNumbersAreAPoint2) {
+  const Object stated =
+      with({property("delta", "vector", Vec2<double>{3, 4}), property("albedo", "float", 1.0)}, {});
+  EXPECT_EQ(Parameters(stated, textured, unread_).point2("delta"), (Vec2<double>{3, 4}));
+  const Object defaulted = with({property("albedo", "float", 1.0)}, {});
+  EXPECT_EQ(Parameters(defaulted, textured, unread_).point2("delta"), (Vec2<double>{0, 0.5}));
+  EXPECT_THAT(error_of(with({property("delta", "point", Vec3<double>{3, 4, 5})}, {"albedo"})),
+              HasSubstr("needs 2 numbers, found 3"));
+  EXPECT_NE(error_of(with({property("delta", "float", 3.0)}, {"albedo"})), "");
+}
+
 TEST_F(ParametersTest, AWrongDefaultIsAFaultOfTheProgram) {
   Plugin wrong = plugin;
   wrong.parameters[2].default_value = "20x";

@@ -25,14 +25,14 @@ LoadedScene small_scene() {
   return load_scene(read_nori_xml(folder.path() / "scene.xml"));
 }
 
-class Replay : public testing::TestWithParam<IntegratorKind> {};
+class Replay : public testing::TestWithParam<const char*> {};
 
 TEST_P(Replay, SumsToThePixelOfTheScalarKernel) {
   LoadedScene loaded = small_scene();
   for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol}) {
     loaded.scene.sampler = sampler;
     RenderSettings settings;
-    settings.integrator.kind = GetParam();
+    settings.integrator = integrator_from_name(GetParam());
     settings.samples_per_pixel = settings.replicates =
         2;  // so that a replicate's mean is one sample's radiance
     settings.seed = 11;
@@ -58,38 +58,48 @@ TEST_P(Replay, SumsToThePixelOfTheScalarKernel) {
 TEST_P(Replay, SaysHowTheRadianceCameAbout) {
   const LoadedScene loaded = small_scene();
   RenderSettings settings;
-  settings.integrator.kind = GetParam();
+  settings.integrator = integrator_from_name(GetParam());
   settings.samples_per_pixel = 64;
   settings.replicates = 2;
-  const bool has_light_samples = GetParam() != IntegratorKind::direct;
-  const bool has_bsdf_samples = GetParam() != IntegratorKind::light;
+  const PathRules rules = settings.integrator.rules;
   for (int index = 0; index < 32; ++index) {
     const SampleTrace trace = replay(loaded.scene, settings, {1, 1, 1, index});
     EXPECT_NEAR(trace.x_px, 1.5, 2.5);
     EXPECT_NEAR(trace.y_px, 1.5, 2.5);
     EXPECT_NEAR(length(trace.ray_direction), 1, 1e-6);
-    ASSERT_TRUE(trace.hit);
-    EXPECT_EQ(trace.light_sample.has_value(), has_light_samples);
-    EXPECT_EQ(trace.bsdf_sample.has_value(), has_bsdf_samples);
-    if (trace.hit->geometry == 0) {
-      EXPECT_NEAR(trace.hit->position.z, 0, 1e-6);
+    ASSERT_FALSE(trace.vertices.empty());
+    const SampleTrace::Vertex& first = trace.vertices.front();
+    ASSERT_TRUE(first.surface);
+    EXPECT_EQ(first.light_sample.has_value(), rules.has_light_samples());
+    EXPECT_EQ(first.bsdf_sample.has_value(), rules.is_followed(0));
+    if (first.surface->geometry == 0) {
+      EXPECT_NEAR(first.position.z, 0, 1e-6);
     }
-    if (GetParam() == IntegratorKind::light) {
-      const SampleTrace::LightSample& sample = *trace.light_sample;
-      EXPECT_EQ(trace.radiance.r, trace.emission.r + (sample.is_visible ? sample.unshadowed.r : 0));
-      EXPECT_NEAR(length(sample.position - Vec3f{1, 0, 1.5f}), 0.6, 1e-4);
+    if (first.light_sample) {
+      EXPECT_NEAR(length(first.light_sample->end - Vec3f{1, 0, 1.5f}), 0.6, 1e-4);
+      const float emission = first.surface->light >= 0 && dot(first.surface->ng, trace.ray_direction) < 0;
+      EXPECT_EQ(first.radiance.r,
+                emission + (first.light_sample->is_visible ? first.light_sample->unshadowed.r : 0));
     }
-    if (GetParam() == IntegratorKind::direct) {
-      const SampleTrace::BsdfSample& sample = *trace.bsdf_sample;
-      const bool meets_light = sample.is_ray_cast && sample.light == 0;
-      EXPECT_EQ(trace.radiance.r, trace.emission.r + (meets_light ? sample.throughput.r : 0));
+    if (first.bsdf_sample && first.bsdf_sample->is_followed) {
+      ASSERT_GE(trace.vertices.size(), 2u);
+      const SampleTrace::Vertex& second = trace.vertices[1];
+      if (second.kind == SampleTrace::Vertex::Kind::surface) {
+        EXPECT_NEAR(length(normalize(second.position - first.position) - first.bsdf_sample->direction), 0, 1e-3);
+      }
+      if (settings.integrator.name == "direct") {
+        const bool meets_light = second.surface && second.surface->light >= 0 &&
+                                 dot(second.surface->ng, first.bsdf_sample->direction) < 0;
+        EXPECT_EQ(trace.radiance.r, first.radiance.r + (meets_light ? first.bsdf_sample->throughput.r : 0));
+      }
     }
+    EXPECT_EQ(trace.radiance, trace.vertices.back().radiance);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Replay,
-                         testing::Values(IntegratorKind::light, IntegratorKind::direct,
-                                         IntegratorKind::average, IntegratorKind::mis));
+                         testing::Values("light", "direct", "average", "mis", "path_mis", "path_ems",
+                                         "path_mats", "whitted", "every_light"));
 
 }  // namespace
 }  // namespace etendue

@@ -90,12 +90,16 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   all["power_cosine_pdf"] = {{real(-1, 1, {0, 1, 0x1.fffffep-1f}), exponent}, 100, 1e-30};
   all["square_to_uniform_cone"] = {{unit(), unit(), magnitude(-6, 0, {1})}, 6, 1};
   all["uniform_cone_pdf"] = {{magnitude(-6, 0, {1})}, 1};
+  all["square_to_uniform_disk"] = {{unit()}, 4, 1};
   // sqrt(1 - z^2) near a pole.
   all["square_to_uniform_sphere"] = {{unit()}, 12, 1};
   all["Frame"] = {{real(-1, 1)}, 4, 1, 2};
   all["sample_offset_px"] = {{unit()}, 3, 1};
+  // The sign at the edge of a lobe is exact: it compares the numbers themselves.
+  all["sample_offset_px, sample_weight"] = {{unit()}, 3, 1};
   // Of film coordinates up to 64 px, and of the clip plane at 1e4 m.
   all["Camera::ray"] = {{real(0, 64, {0, 64})}, 4, 1};
+  all["Camera::ray, lens"] = {{real(0, 64, {0, 64}), real(0, 64), real(-1, 1, {0, 1})}, 4, 1};
   all["interpolate_normal"] = {{word_below(1), word_below(8), real(0, 0.5f, {0})}, 4, 1};
   all["Diffuse::eval_"] = all["Diffuse::pdf_solid_angle_"] = {{real(-1, 1)}, 1, 1e-30, 2};
   all["Diffuse::sample_"] = {{unit()}, 5, 1, 1};
@@ -126,13 +130,15 @@ LoadedScene test_scene(std::uint32_t lights) {
   for (std::uint32_t i = 3; i < lights; ++i)
     more += rectangle_xml({0.3 * i, 0.1 * i, 3 + 0.1 * i}, {0.5, 0, 0}, {0, -0.5, 0.1}, light_xml(1 + i));
 
+  const std::string lens =
+      "<float name=\"apertureRadius\" value=\"0.2\"/><float name=\"focusDistance\" value=\"3\"/>";
   const std::string octahedron =
       "v 1 0 2\nv -1 0 2\nv 0 1 2\nv 0 -1 2\nv 0 0 3\nv 0 0 1.4\nvn 1 0 0\nvn -1 0 0\nvn 0 1 0\nvn 0 -1 "
       "0\nvn 0 0 1\nvn 0 0 -1\n"
       "f 1//1 3//3 5//5\nf 3//3 2//2 5//5\nf 2//2 4//4 5//5\nf 4//4 1//1 5//5\n"
       "f 3//3 1//1 6//6\nf 2//2 3//3 6//6\nf 4//4 2//2 6//6\nf 1//1 4//4 6//6\n";
   return load_scene_text(
-      camera_xml({1, 2, 3}, {0, 0, 0}, 50, 64, "sobol") +
+      camera_xml({1, 2, 3}, {0, 0, 0}, 50, 64, "sobol", lens) +
           mesh_xml("octahedron.obj", diffuse_xml(0.6) + light_xml(3)) +
           rectangle_xml({0, 0, 4}, {1, 0.2, 0}, {0, -1, 0.3}, phong_xml(0.3, 0.5, 30) + light_xml(2)) +
           sphere_xml({2, 1, 3}, 0.6, light_xml(5)) + more,

@@ -4,7 +4,7 @@
 #include "base/frame.h"
 #include "base/warp.h"
 #include "integrator/light_sampling.h"
-#include "integrator/mis_weights.h"
+#include "integrator/path_rules.h"
 
 #include <iterator>
 
@@ -109,6 +109,7 @@ void uniform_cone(const Scene&, Packet& p) {
   p.give(square_to_uniform_cone(u, p.real()));
 }
 void uniform_cone_pdf(const Scene&, Packet& p) { p.give(uniform_cone_pdf_solid_angle(p.real())); }
+void uniform_disk(const Scene&, Packet& p) { p.give(square_to_uniform_disk(p.square())); }
 void uniform_sphere(const Scene&, Packet& p) { p.give(square_to_uniform_sphere(p.square())); }
 
 void frame(const Scene&, Packet& p) {
@@ -118,9 +119,19 @@ void frame(const Scene&, Packet& p) {
 }
 
 void filter_offset(const Scene& scene, Packet& p) { p.give(scene.filter.sample_offset_px(p.real())); }
+void signed_filter_offset(const Scene&, Packet& p) {
+  static const PixelFilter filter = PixelFilter::mitchell();
+  const Vec2<F> u = p.square();
+  p.give(filter.sample_offset_px(u.x)), p.give(filter.sample_weight(u.x, u.y));
+}
 void camera_ray(const Scene& scene, Packet& p) {
   const Vec2<F> at = p.square();
   const CameraRay<F> ray = scene.camera.ray(at.x, at.y);
+  p.give(ray.origin), p.give(ray.direction), p.give(ray.t_near), p.give(ray.t_far);
+}
+void lens_ray(const Scene& scene, Packet& p) {
+  const Vec2<F> at = p.square();
+  const CameraRay<F> ray = scene.camera.ray(at.x, at.y, p.square());
   p.give(ray.origin), p.give(ray.direction), p.give(ray.t_near), p.give(ray.t_far);
 }
 void smooth_normal(const Scene& scene, Packet& p) {
@@ -128,21 +139,27 @@ void smooth_normal(const Scene& scene, Packet& p) {
   p.give(interpolate_normal<F>(scene.geometry, geometry, primitive, p.square(), every_lane()));
 }
 
+/// f(model), for the material of this index at uv = 0.
+template <int material, class Function>
+void visit_bsdf(const Scene& scene, Function&& f) {
+  for_each_material<F>(scene.materials, I(material), Vec2<F>{F(0), F(0)}, every_lane(),
+                       [&](const auto& bsdf, const M&) { f(bsdf); });
+}
 template <int material>
 void bsdf_eval(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec(), wi = p.vec();
-  std::visit([&](const auto& bsdf) { p.give(bsdf.eval_(wo, wi)); }, scene.materials[material]);
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.eval_(wo, wi)); });
 }
 template <int material>
 void bsdf_pdf(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec(), wi = p.vec();
-  std::visit([&](const auto& bsdf) { p.give(bsdf.pdf_solid_angle_(wo, wi)); }, scene.materials[material]);
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.pdf_solid_angle_(wo, wi)); });
 }
 template <int material>
 void bsdf_sample(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec();
   const Vec2<F> u_bsdf = p.square();
-  std::visit([&](const auto& bsdf) { p.give(bsdf.sample_(wo, u_bsdf).wi_local); }, scene.materials[material]);
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.sample_(wo, u_bsdf).wi_local); });
 }
 
 void light_position(const Scene& scene, Packet& p) {
@@ -164,12 +181,12 @@ void lights_sample(const Scene& scene, Packet& p) {
   const Vec3<F> reference = p.vec();
   const LightSample<F> sample = sample_lights<F>(scene, reference, p.words(), every_lane());
   const Vec3<F> none{F(0), F(0), F(0)};
-  p.give(select(sample.is_facing, sample.wi, none));
-  p.give(select(sample.is_facing, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
-  p.give(select(sample.is_facing, sample.pdf_solid_angle(), F(0)));
+  p.give(select(sample.is_there, sample.wi, none));
+  p.give(select(sample.is_there, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
+  p.give(select(sample.is_there, sample.pdf_solid_angle(), F(0)));
 }
 
-template <Combination combination>
+template <DirectLight combination>
 void weight(const Scene&, Packet& p) {
   const F own = p.real(), other = p.real();
   p.give(mis_weight(combination, own, other));
@@ -194,10 +211,13 @@ constexpr WideFunction functions[]{
     {"power_cosine_pdf", 2, 1, Words::floats, run<power_cosine_pdf>},
     {"square_to_uniform_cone", 3, 3, Words::floats, run<uniform_cone>},
     {"uniform_cone_pdf", 1, 1, Words::floats, run<uniform_cone_pdf>},
+    {"square_to_uniform_disk", 2, 2, Words::floats, run<uniform_disk>},
     {"square_to_uniform_sphere", 2, 3, Words::floats, run<uniform_sphere>},
     {"Frame", 6, 12, Words::floats, run<frame>},
     {"sample_offset_px", 1, 1, Words::floats, run<filter_offset>},
+    {"sample_offset_px, sample_weight", 2, 2, Words::floats, run<signed_filter_offset>},
     {"Camera::ray", 2, 8, Words::floats, run<camera_ray>},
+    {"Camera::ray, lens", 4, 8, Words::floats, run<lens_ray>},
     {"interpolate_normal", 4, 3, Words::floats, run<smooth_normal>},
     {"Diffuse::eval_", 6, 3, Words::floats, run<bsdf_eval<0>>},
     {"Diffuse::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<0>>},
@@ -208,8 +228,8 @@ constexpr WideFunction functions[]{
     {"Lights::sample_position", 6, 9, Words::floats, run<light_position>},
     {"Lights::pdf_area", 6, 2, Words::floats, run<light_pdf>},
     {"sample_lights", 5, 7, Words::floats, run<lights_sample>},
-    {"mis_weight balance", 2, 1, Words::floats, run<weight<Combination::balance>>},
-    {"mis_weight power", 2, 1, Words::floats, run<weight<Combination::power>>},
+    {"mis_weight balance", 2, 1, Words::floats, run<weight<DirectLight::balance>>},
+    {"mis_weight power", 2, 1, Words::floats, run<weight<DirectLight::power>>},
 };
 
 }  // namespace

@@ -1,0 +1,109 @@
+// A vertex of a packet of paths: the surface or the place in a medium that their rays have come to, and where
+// rays that leave it start and end.
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "integrator/sample_block.h"
+#include "scene/scene.h"
+
+namespace etendue {
+
+/// A shadow segment ends this far along its way to the light, so that the light does not shadow itself.
+inline constexpr float shadow_segment_end = 1 - 1e-4f;
+
+/// Rays start this far off the surface, as a fraction of the largest coordinate or of the distance from the
+/// ray's origin, whichever is larger: some tens of rounding errors of the hit point.
+inline constexpr float ray_offset = 1e-5f;
+
+/// The `geometry` of a hit where the path has scattered in the medium, at t; -1: the ray left the scene.
+inline constexpr std::int32_t in_medium = -2;
+
+/// How far off the surface the rays that leave it start (m), for a point found at `distance` along its ray.
+template <class F>
+F ray_clearance(const Vec3<F>& position, const F& distance) {
+  return F(ray_offset) * max(max(abs(position.x), abs(position.y)), max(abs(position.z), distance));
+}
+
+/// A hit's normals, in the lanes of `is_hit`.
+template <class F>
+struct HitNormals {
+  Vec3<F> ng;  ///< Unit.
+  Vec3<F> ns;  ///< Unit; ng where the shape has no vertex normals.
+
+  HitNormals(const Scene& scene, const HitColumns& hits, int i, const Mask<F>& is_hit)
+      : ng(normalize(load_lanes<F>(hits.ng, i))), ns(ng) {
+    if (!scene.geometry.has_any_normals) return;
+    const Int<F> geometry = select(is_hit, load_lanes<Int<F>>(&hits.geometry[i]), Int<F>(0));
+    const Mask<F> is_smooth =
+        mask_and(is_hit, equal(gather(scene.geometry.has_normals.data(), geometry), Int<F>(1)));
+    if (!any(is_smooth)) return;
+    const Vec2<F> barycentric{load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])};
+    const Vec3<F> smooth = normalize(interpolate_normal<F>(
+        scene.geometry, geometry, load_lanes<Int<F>>(&hits.primitive[i]), barycentric, is_smooth));
+    ns = select(is_smooth, smooth, ng);
+  }
+};
+
+/// What the rays i, i + 1 ... have come to.
+template <class F>
+struct Vertex {
+  Mask<F> is_there;    ///< Elsewhere the ray left the scene.
+  Mask<F> is_surface;  ///< Elsewhere, where anything is there, the path scatters in the medium.
+  Vec3<F> position, wo;
+  Vec3<F> ng, ns;  ///< In the medium both are wo.
+  Vec2<F> uv;      ///< Zero unless the scene has textures.
+  F clearance;
+  Int<F> material;  ///< Any where no surface is.
+
+  Vertex(const Scene& scene, const RayColumns& rays, const HitColumns& hits, int i) {
+    const Int<F> geometry = load_lanes<Int<F>>(&hits.geometry[i]);
+    is_surface = less(Int<F>(-1), geometry);
+    is_there = is_surface;
+    const HitNormals<F> normals(scene, hits, i, is_surface);
+    const F t = load_lanes<F>(&hits.t[i]);
+    const Vec3<F> direction = load_lanes<F>(rays.direction, i);
+    position = load_lanes<F>(rays.origin, i) + direction * t;
+    ng = normals.ng;
+    ns = normals.ns;
+    wo = -direction;
+    clearance = ray_clearance(position, t);
+    const Int<F> safe = select(is_surface, geometry, Int<F>(0));
+    material = gather(scene.geometry.material.data(), safe);
+    uv = {F(0), F(0)};
+    if (scene.has_textures)
+      uv = surface_uv<F>(scene.geometry, safe, load_lanes<Int<F>>(&hits.primitive[i]),
+                         {load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])}, ng, is_surface);
+    if (scene.medium) {
+      const Mask<F> is_in_medium = equal(geometry, Int<F>(in_medium));
+      is_there = mask_not(equal(geometry, Int<F>(-1)));
+      ng = select(is_in_medium, wo, ng);
+      ns = select(is_in_medium, wo, ns);
+      clearance = select(is_in_medium, F(0), clearance);
+    }
+  }
+
+  /// Whether a direction lies on the side of the surface itself that it has relative to the shading normal,
+  /// both measured from the side of wo; without that, light leaks through smooth meshes.
+  Mask<F> is_consistent(const F& cos_theta_o, const F& cos_theta_i, const Vec3<F>& wi) const {
+    return mask_or(cos_theta_o * cos_theta_i * (dot(ng, wo) * dot(ng, wi)) > F(0), mask_not(is_surface));
+  }
+
+  /// |cos theta_i| at a surface, 1 in the medium.
+  F foreshortening(const F& cos_theta_i) const { return select(is_surface, abs(cos_theta_i), F(1)); }
+
+  /// Where a ray along `wi` starts.
+  Vec3<F> offset_origin(const Vec3<F>& wi) const {
+    return position + ng * select(dot(ng, wi) > F(0), clearance, -clearance);
+  }
+};
+
+/// f(model, lanes) for each distinct material, and for the medium's phase function, among the lanes of `m`.
+template <class F, class Function>
+void for_each_scatterer(const Scene& scene, const Vertex<F>& vertex, const Mask<F>& m, Function&& f) {
+  for_each_material<F>(scene.materials, vertex.material, vertex.uv, mask_and(m, vertex.is_surface), f);
+  if (!scene.medium) return;
+  const Mask<F> is_in_medium = mask_and(m, mask_not(vertex.is_surface));
+  if (any(is_in_medium)) f(scene.medium->phase, is_in_medium);
+}
+
+}  // namespace etendue
