@@ -1,15 +1,17 @@
 // Lights: how ONE light emits and is sampled.
 //
 // Lanes of a packet may hold different lights, so a kind of light is a table with one column a field, and its
-// functions take a lane-varying row. Two sorts: area lights (mesh, rectangle, sphere) have `sample_position`
-// and `pdf_area`; the others have `sample`, and those at infinity that a ray can meet also `radiance` and
-// `pdf_solid_angle`. To add a kind: write light/NAME_light.h, give it a member, a LightKind and a case here,
-// a line in scene/load_light.cpp, and add it to the chi-squared tests in tests/statistical/light_test.cpp.
+// functions take a lane-varying row. Two sorts: area lights (mesh, rectangle, sphere, disk) have
+// `sample_position` and `pdf_area`; the others have `sample`, and those at infinity that a ray can meet also
+// `radiance` and `pdf_solid_angle`. To add a kind: write light/NAME_light.h, give it a member, a LightKind
+// and a case here, a line in scene/load_light.cpp, and add it to the chi-squared tests in
+// tests/statistical/light_test.cpp.
 #pragma once
 
 #include "base/color.h"
 #include "base/lookup_table.h"
 #include "light/directional_light.h"
+#include "light/disk_light.h"
 #include "light/distant_disk_light.h"
 #include "light/envmap_light.h"
 #include "light/light_sample.h"
@@ -30,6 +32,7 @@ enum class LightKind : std::int32_t {
   mesh,
   rectangle,
   sphere,
+  disk,
   point,
   spot,
   directional,
@@ -37,7 +40,7 @@ enum class LightKind : std::int32_t {
   envmap
 };
 
-constexpr bool is_area_light(LightKind kind) { return kind <= LightKind::sphere; }
+constexpr bool is_area_light(LightKind kind) { return kind <= LightKind::disk; }
 /// Met by rays that leave the scene.
 constexpr bool is_infinite_light(LightKind kind) { return kind >= LightKind::distant_disk; }
 
@@ -63,6 +66,7 @@ class Lights {
   MeshLights meshes;
   RectangleLights rectangles;
   SphereLights spheres;
+  DiskLights disks;
   PointLights points;
   SpotLights spots;
   DirectionalLights directionals;
@@ -164,7 +168,8 @@ class Lights {
   template <class Table>
   static constexpr bool is_area = std::is_same_v<std::remove_cvref_t<Table>, MeshLights> ||
                                   std::is_same_v<std::remove_cvref_t<Table>, RectangleLights> ||
-                                  std::is_same_v<std::remove_cvref_t<Table>, SphereLights>;
+                                  std::is_same_v<std::remove_cvref_t<Table>, SphereLights> ||
+                                  std::is_same_v<std::remove_cvref_t<Table>, DiskLights>;
 
   /// Then a light's id is its row.
   bool meshes_only() const { return meshes.count() == count(); }
@@ -183,6 +188,8 @@ class Lights {
           return f(rectangles, safe_row, lanes);
         case LightKind::sphere:
           return f(spheres, safe_row, lanes);
+        case LightKind::disk:
+          return f(disks, safe_row, lanes);
         case LightKind::point:
           return f(points, safe_row, lanes);
         case LightKind::spot:
