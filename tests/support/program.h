@@ -10,6 +10,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -51,6 +52,7 @@ struct ProgramResult {
   int exit_code;
   std::string out, err;
   double seconds;
+  long peak_memory_kib;  ///< Resident.
 };
 
 /// A run of etendue in the folder `where`, without a terminal.
@@ -87,13 +89,14 @@ class Program {
   /// Kills it, for an exit code of -SIGKILL, where it is not done in time.
   ProgramResult wait(double timeout_s = 120) {
     int status = 0;
-    while (waitpid(process_, &status, WNOHANG) == 0) {
+    rusage usage{};
+    while (wait4(process_, &status, WNOHANG, &usage) == 0) {
       if (seconds() > timeout_s) send(SIGKILL);
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     process_ = 0;
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_file(streams_.path() / "out"),
-            read_file(streams_.path() / "err"), seconds()};
+            read_file(streams_.path() / "err"), seconds(), usage.ru_maxrss};
   }
 
   double seconds() const {
