@@ -7,19 +7,26 @@
 
 namespace etendue {
 
+std::array<double, 3> half_extent(const Disk& disk) {
+  const auto along = [](float x, float y) { return std::hypot(double(x), double(y)); };
+  return {along(disk.along_x.x, disk.along_y.x), along(disk.along_x.y, disk.along_y.y),
+          along(disk.along_x.z, disk.along_y.z)};
+}
+
 Sphere bounding_sphere(const Geometry& geometry) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-  const auto include = [&](const Vec3f& p, double radius) {
+  const auto include = [&](const Vec3f& p, const std::array<double, 3>& extent) {
     const std::array<double, 3> at{p.x, p.y, p.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], at[axis] - radius);
-      high[axis] = std::max(high[axis], at[axis] + radius);
+      low[axis] = std::min(low[axis], at[axis] - extent[axis]);
+      high[axis] = std::max(high[axis], at[axis] + extent[axis]);
     }
   };
   // Behind the last vertex stands a spare one.
-  for (std::size_t i = 0; i + 1 < geometry.positions.size(); ++i) include(geometry.positions[i], 0);
-  for (const Sphere& sphere : geometry.spheres) include(sphere.center, double(sphere.radius));
+  for (std::size_t i = 0; i + 1 < geometry.positions.size(); ++i) include(geometry.positions[i], {0, 0, 0});
+  for (const Sphere& s : geometry.spheres) include(s.center, {s.radius, s.radius, s.radius});
+  for (const Disk& disk : geometry.disks) include(disk.center, half_extent(disk));
   if (low[0] > high[0]) return {{0, 0, 0}, 0};
   const auto middle = [&](std::size_t axis) { return float(0.5 * (low[axis] + high[axis])); };
   const Vec3f center{middle(0), middle(1), middle(2)};

@@ -13,12 +13,10 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
     throw InputError("the scene has more than 715 million vertices or 238 million triangles");
   if (!positions.empty()) positions.pop_back();  // The spare vertex moves to the new end.
   const auto first_vertex = std::int32_t(positions.size());
-  material.push_back(ids.material);
-  light.push_back(ids.light);
-  first_triangle.push_back(std::int32_t(indices.size() / 3));
-  has_normals.push_back(mesh.normals.empty() ? 0 : 1);
-  triangles.push_back(std::int32_t(mesh.triangle_count()));
-  sphere.push_back(-1);
+  add_row(ids);
+  first_triangle.back() = std::int32_t(indices.size() / 3);
+  has_normals.back() = mesh.normals.empty() ? 0 : 1;
+  triangles.back() = std::int32_t(mesh.triangle_count());
   has_any_normals = has_any_normals || !mesh.normals.empty();
   positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
   if (mesh.normals.empty())
@@ -36,14 +34,24 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
 }
 
 std::int32_t Geometry::add_sphere(const Sphere& added, SurfaceIds ids) {
-  material.push_back(ids.material);
-  light.push_back(ids.light);
-  first_triangle.push_back(0);
-  has_normals.push_back(0);
-  triangles.push_back(0);
-  sphere.push_back(std::int32_t(spheres.size()));
+  add_row(ids);
+  sphere.back() = std::int32_t(spheres.size());
   spheres.push_back(added);
   return count() - 1;
+}
+
+std::int32_t Geometry::add_disk(const Disk& added, SurfaceIds ids) {
+  add_row(ids);
+  disk.back() = std::int32_t(disks.size());
+  disks.push_back(added);
+  return count() - 1;
+}
+
+void Geometry::add_row(SurfaceIds ids) {
+  material.push_back(ids.material);
+  light.push_back(ids.light);
+  for (std::vector<std::int32_t>* column : {&first_triangle, &has_normals, &triangles}) column->push_back(0);
+  for (std::vector<std::int32_t>* column : {&sphere, &disk}) column->push_back(-1);
 }
 
 }  // namespace etendue

@@ -15,6 +15,13 @@ struct Sphere {
   float radius;  ///< m, > 0.
 };
 
+/// The unit disk under an affine transform: a disk or an ellipse.
+struct Disk {
+  Vec3f center;            ///< World, m.
+  Vec3f along_x, along_y;  ///< From the centre to the edge, where the unit disk's x and y axes end (m).
+  Vec3f ng;                ///< Unit, on the front side.
+};
+
 /// What a surface is made of and whether it shines, by id; -1: none.
 struct SurfaceIds {
   std::int32_t material;
@@ -22,22 +29,24 @@ struct SurfaceIds {
 };
 
 /// Every mesh's vertices and triangles one behind the other, so that a packet whose lanes hit different
-/// meshes still gathers from one array. A geometry is one mesh or one sphere.
+/// meshes still gathers from one array. A geometry is one mesh, one sphere or one disk.
 class Geometry {
  public:
-  /// Both return the geometry's id.
+  /// Each returns the geometry's id.
   std::int32_t add_mesh(const Mesh& mesh, SurfaceIds ids);
   std::int32_t add_sphere(const Sphere& added, SurfaceIds ids);
+  std::int32_t add_disk(const Disk& added, SurfaceIds ids);
 
   std::int32_t count() const { return std::int32_t(material.size()); }
   std::size_t triangle_count() const { return indices.size() / 3; }
 
   // Per geometry.
   std::vector<std::int32_t> material, light;
-  std::vector<std::int32_t> first_triangle;  ///< Into `indices`, in triangles; 0 for spheres.
+  std::vector<std::int32_t> first_triangle;  ///< Into `indices`, in triangles; 0 unless a mesh.
   std::vector<std::int32_t> has_normals;     ///< 1 where the mesh has vertex normals.
-  std::vector<std::int32_t> triangles;       ///< Number of them; 0 for spheres.
-  std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 for meshes.
+  std::vector<std::int32_t> triangles;       ///< Number of them; 0 unless a mesh.
+  std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 unless a sphere.
+  std::vector<std::int32_t> disk;            ///< Into `disks`; -1 unless a disk.
   // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none. The ray
   // caster reads 16 bytes of each position, so one spare vertex always stands behind the last.
   std::vector<Vec3f> positions, normals;
@@ -45,11 +54,13 @@ class Geometry {
   // Three global vertex numbers a triangle.
   std::vector<std::int32_t> indices;
   std::vector<Sphere> spheres;
+  std::vector<Disk> disks;
   bool has_any_normals = false;
-};
 
-template <class F>
-Vec2<F> sphere_uv(const Vec3<F>& ng) { return {ng.x, ng.y}; }
+ private:
+  /// Of no shape yet.
+  void add_row(SurfaceIds ids);
+};
 
 /// The vertex normal interpolated at barycentric (u, v), not normalised; lanes must be in `m`.
 template <class F>
@@ -66,28 +77,6 @@ Vec3<F> interpolate_normal(const Geometry& geometry, const Int<F>& geometry_id, 
   };
   const F w = F(1) - barycentric.x - barycentric.y;
   return normal(0) * w + normal(1) * barycentric.x + normal(2) * barycentric.y;
-}
-
-/// Surface coordinates at barycentric (u, v) of a mesh's triangle, (0, 0) where the mesh has none; on a sphere
-/// by its outward normal `ng`.
-template <class F>
-Vec2<F> surface_uv(const Geometry& geometry, const Int<F>& geometry_id, const Int<F>& primitive,
-                   const Vec2<F>& barycentric, const Vec3<F>& ng, const Mask<F>& m) {
-  const Int<F> zero(0);
-  const Int<F> safe_id = select(m, geometry_id, zero);
-  const Mask<F> is_mesh = mask_and(m, less(gather(geometry.sphere.data(), safe_id), zero));
-  Vec2<F> uv = sphere_uv(ng);
-  if (!any(is_mesh)) return uv;
-  const Int<F> triangle = select(is_mesh, gather(geometry.first_triangle.data(), safe_id) + primitive, zero);
-  const float* uvs = &geometry.uvs[0].x;
-  const auto corner_uv = [&](int corner) {
-    const Int<F> at = gather(geometry.indices.data() + corner, triangle * Int<F>(3)) * Int<F>(2);
-    return Vec2<F>{gather(uvs, at), gather(uvs + 1, at)};
-  };
-  const Vec2<F> uv_0 = corner_uv(0), uv_1 = corner_uv(1), uv_2 = corner_uv(2);
-  const F w = F(1) - barycentric.x - barycentric.y;
-  return {select(is_mesh, uv_0.x * w + uv_1.x * barycentric.x + uv_2.x * barycentric.y, uv.x),
-          select(is_mesh, uv_0.y * w + uv_1.y * barycentric.x + uv_2.y * barycentric.y, uv.y)};
 }
 
 }  // namespace etendue

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -10,6 +11,7 @@
 #endif
 
 #include "base/error.h"
+#include "geometry/bounds.h"
 #include "geometry/raycast.h"
 
 namespace etendue {
@@ -175,74 +177,119 @@ void unoccluded_wide(RTCScene scene, const SegmentSpan& segments, std::int32_t* 
   }
 }
 
-/// The nearest root in (t_near, t_far) of |origin + t direction - center| = radius, or NaN.
-double nearest_sphere_hit(const Sphere& sphere, const Vec3<double>& origin, const Vec3<double>& direction,
-                          double t_near, double t_far) {
-  const Vec3<double> from_center{origin.x - sphere.center.x, origin.y - sphere.center.y,
-                                 origin.z - sphere.center.z};
-  const double a = length_sq(direction), half_b = dot(from_center, direction);
+/// Where a ray meets a shape that is not made of triangles; t is NaN where it does not.
+struct ShapeHit {
+  double t = std::nan("");
+  Vec3<double> ng{};    ///< Not normalised.
+  double u = 0, v = 0;  ///< What surface_uv() takes.
+};
+
+struct Segment {
+  Vec3<double> origin, direction;
+  double t_near, t_far;
+
+  bool has(double t) const { return t > t_near && t < t_far; }
+};
+
+Vec3<double> wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
+
+/// The nearest root of |origin + t direction - center| = radius.
+ShapeHit nearest_hit(const Sphere& sphere, const Segment& ray) {
+  const Vec3<double> from_center = ray.origin - wide(sphere.center);
+  const double a = length_sq(ray.direction), half_b = dot(from_center, ray.direction);
   // The discriminant from the distance of the line to the centre: no cancellation for distant spheres
   // (Hearn and Baker, in Haines et al. 2019, "Precision improvements for ray/sphere intersection").
-  const Vec3<double> closest = from_center - direction * (half_b / a);
+  const Vec3<double> closest = from_center - ray.direction * (half_b / a);
   const double discriminant = double(sphere.radius) * sphere.radius - length_sq(closest);
-  if (discriminant < 0) return std::nan("");
+  if (discriminant < 0) return {};
   const double half_chord = std::sqrt(discriminant / a), middle = -half_b / a;
   for (const double t : {middle - half_chord, middle + half_chord})
-    if (t > t_near && t < t_far) return t;
-  return std::nan("");
+    if (ray.has(t)) return {t, from_center + ray.direction * t};
+  return {};
 }
 
-void sphere_bounds(const RTCBoundsFunctionArguments* args) {
-  const Sphere& sphere = static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
-  // Rounded outwards, so that the box never cuts the sphere.
-  const auto below = [&](float center) { return std::nextafter(center - sphere.radius, -INFINITY); };
-  const auto above = [&](float center) { return std::nextafter(center + sphere.radius, INFINITY); };
+/// The point of the plane, as x and y of the unit disk that the transform made into this one.
+ShapeHit nearest_hit(const Disk& disk, const Segment& ray) {
+  const Vec3<double> along_x = wide(disk.along_x), along_y = wide(disk.along_y);
+  const Vec3<double> across = cross(along_x, along_y), to_center = wide(disk.center) - ray.origin;
+  const double t = dot(to_center, across) / dot(ray.direction, across);
+  if (!ray.has(t)) return {};
+  const Vec3<double> from_center = ray.direction * t - to_center;
+  const double x = dot(cross(from_center, along_y), across) / length_sq(across),
+               y = dot(cross(along_x, from_center), across) / length_sq(across);
+  if (!(x * x + y * y <= 1)) return {};
+  return {t, wide(disk.ng), x, y};
+}
+
+std::array<double, 3> half_extent(const Sphere& sphere) {
+  return {sphere.radius, sphere.radius, sphere.radius};
+}
+
+template <class Shape>
+void shape_bounds(const RTCBoundsFunctionArguments* args) {
+  const Shape& shape = *static_cast<const Shape*>(args->geometryUserPtr);
+  const std::array<double, 3> extent = half_extent(shape);
+  // Rounded outwards, so that the box never cuts the shape.
+  const auto below = [](double center, double e) { return std::nextafter(float(center - e), -INFINITY); };
+  const auto above = [](double center, double e) { return std::nextafter(float(center + e), INFINITY); };
   RTCBounds& bounds = *args->bounds_o;
-  bounds.lower_x = below(sphere.center.x);
-  bounds.lower_y = below(sphere.center.y);
-  bounds.lower_z = below(sphere.center.z);
-  bounds.upper_x = above(sphere.center.x);
-  bounds.upper_y = above(sphere.center.y);
-  bounds.upper_z = above(sphere.center.z);
+  bounds.lower_x = below(shape.center.x, extent[0]);
+  bounds.lower_y = below(shape.center.y, extent[1]);
+  bounds.lower_z = below(shape.center.z, extent[2]);
+  bounds.upper_x = above(shape.center.x, extent[0]);
+  bounds.upper_y = above(shape.center.y, extent[1]);
+  bounds.upper_z = above(shape.center.z, extent[2]);
 }
 
-template <class RayN>
-double hit_lane(const Sphere& sphere, RayN* rays, unsigned n, unsigned lane) {
-  return nearest_sphere_hit(
-      sphere, {RTCRayN_org_x(rays, n, lane), RTCRayN_org_y(rays, n, lane), RTCRayN_org_z(rays, n, lane)},
-      {RTCRayN_dir_x(rays, n, lane), RTCRayN_dir_y(rays, n, lane), RTCRayN_dir_z(rays, n, lane)},
-      RTCRayN_tnear(rays, n, lane), RTCRayN_tfar(rays, n, lane));
+template <class Shape, class RayN>
+ShapeHit hit_lane(const Shape& shape, RayN* rays, unsigned n, unsigned lane) {
+  return nearest_hit(
+      shape, {{RTCRayN_org_x(rays, n, lane), RTCRayN_org_y(rays, n, lane), RTCRayN_org_z(rays, n, lane)},
+              {RTCRayN_dir_x(rays, n, lane), RTCRayN_dir_y(rays, n, lane), RTCRayN_dir_z(rays, n, lane)},
+              RTCRayN_tnear(rays, n, lane),
+              RTCRayN_tfar(rays, n, lane)});
 }
 
-void sphere_intersect(const RTCIntersectFunctionNArguments* args) {
-  const Sphere& sphere = static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
+template <class Shape>
+void shape_intersect(const RTCIntersectFunctionNArguments* args) {
+  const Shape& shape = *static_cast<const Shape*>(args->geometryUserPtr);
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned lane = 0; lane < args->N; ++lane) {
     if (!args->valid[lane]) continue;
-    const double t = hit_lane(sphere, rays, args->N, lane);
-    if (!(t == t)) continue;
-    RTCRayN_tfar(rays, args->N, lane) = float(t);
-    RTCHitN_Ng_x(hits, args->N, lane) =
-        float(RTCRayN_org_x(rays, args->N, lane) + t * RTCRayN_dir_x(rays, args->N, lane) - sphere.center.x);
-    RTCHitN_Ng_y(hits, args->N, lane) =
-        float(RTCRayN_org_y(rays, args->N, lane) + t * RTCRayN_dir_y(rays, args->N, lane) - sphere.center.y);
-    RTCHitN_Ng_z(hits, args->N, lane) =
-        float(RTCRayN_org_z(rays, args->N, lane) + t * RTCRayN_dir_z(rays, args->N, lane) - sphere.center.z);
-    RTCHitN_u(hits, args->N, lane) = 0;
-    RTCHitN_v(hits, args->N, lane) = 0;
+    const ShapeHit hit = hit_lane(shape, rays, args->N, lane);
+    if (!(hit.t == hit.t)) continue;
+    RTCRayN_tfar(rays, args->N, lane) = float(hit.t);
+    RTCHitN_Ng_x(hits, args->N, lane) = float(hit.ng.x);
+    RTCHitN_Ng_y(hits, args->N, lane) = float(hit.ng.y);
+    RTCHitN_Ng_z(hits, args->N, lane) = float(hit.ng.z);
+    RTCHitN_u(hits, args->N, lane) = float(hit.u);
+    RTCHitN_v(hits, args->N, lane) = float(hit.v);
     RTCHitN_geomID(hits, args->N, lane) = args->geomID;
     RTCHitN_primID(hits, args->N, lane) = args->primID;
   }
 }
 
-void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
-  const Sphere& sphere = static_cast<const Sphere*>(args->geometryUserPtr)[args->primID];
+template <class Shape>
+void shape_occluded(const RTCOccludedFunctionNArguments* args) {
+  const Shape& shape = *static_cast<const Shape*>(args->geometryUserPtr);
   for (unsigned lane = 0; lane < args->N; ++lane) {
     if (!args->valid[lane]) continue;
-    const double t = hit_lane(sphere, args->ray, args->N, lane);
-    if (t == t) RTCRayN_tfar(args->ray, args->N, lane) = -INFINITY;
+    const ShapeHit hit = hit_lane(shape, args->ray, args->N, lane);
+    if (hit.t == hit.t) RTCRayN_tfar(args->ray, args->N, lane) = -INFINITY;
   }
+}
+
+/// One shape, which stays where it is for as long as the geometry lives.
+template <class Shape>
+RTCGeometry make_user_geometry(RTCDevice device, const Shape& shape) {
+  RTCGeometry made = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(made, 1);
+  rtcSetGeometryUserData(made, const_cast<Shape*>(&shape));
+  rtcSetGeometryBoundsFunction(made, shape_bounds<Shape>, nullptr);
+  rtcSetGeometryIntersectFunction(made, shape_intersect<Shape>);
+  rtcSetGeometryOccludedFunction(made, shape_occluded<Shape>);
+  return made;
 }
 
 [[noreturn]] void throw_embree_error(RTCDevice device, const char* doing) {
@@ -268,20 +315,17 @@ RayCaster::RayCaster(const Geometry& geometry) : embree_(std::make_unique<Embree
   embree_->scene = rtcNewScene(embree_->device);
   for (std::int32_t id = 0; id < geometry.count(); ++id) {
     RTCGeometry shape;
-    if (geometry.sphere[id] < 0) {
+    if (geometry.triangles[id] > 0) {
       shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
       rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                  geometry.positions.data(), 0, sizeof(Vec3f), geometry.positions.size() - 1);
       rtcSetSharedGeometryBuffer(shape, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices.data(),
                                  std::size_t(geometry.first_triangle[id]) * 3 * sizeof(std::int32_t),
                                  3 * sizeof(std::int32_t), geometry.triangles[id]);
+    } else if (geometry.sphere[id] >= 0) {
+      shape = make_user_geometry(embree_->device, geometry.spheres[geometry.sphere[id]]);
     } else {
-      shape = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_USER);
-      rtcSetGeometryUserPrimitiveCount(shape, 1);
-      rtcSetGeometryUserData(shape, const_cast<Sphere*>(&geometry.spheres[geometry.sphere[id]]));
-      rtcSetGeometryBoundsFunction(shape, sphere_bounds, nullptr);
-      rtcSetGeometryIntersectFunction(shape, sphere_intersect);
-      rtcSetGeometryOccludedFunction(shape, sphere_occluded);
+      shape = make_user_geometry(embree_->device, geometry.disks[geometry.disk[id]]);
     }
     rtcCommitGeometry(shape);
     rtcAttachGeometryByID(embree_->scene, shape, unsigned(id));

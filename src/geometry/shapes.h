@@ -1,6 +1,7 @@
-// Shapes that a scene names without a file, as meshes.
+// Shapes that a scene names without a file.
 #pragma once
 
+#include "geometry/geometry.h"
 #include "geometry/mesh.h"
 
 namespace etendue {
@@ -10,5 +11,9 @@ namespace etendue {
 /// inverse transpose. Two triangles come back whatever the transform; the caller checks that it
 /// is_invertible().
 Mesh make_rectangle(const Transform& world_from_object);
+
+/// The unit disk at z = 0, facing +z, under `world_from_object`: an ellipse where that scales x and y
+/// unlike. A mirroring transform keeps the front side, as above.
+Disk make_disk(const Transform& world_from_object);
 
 }  // namespace etendue

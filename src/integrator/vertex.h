@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
+#include "geometry/surface_uv.h"
 #include "integrator/sample_block.h"
 #include "scene/scene.h"
 

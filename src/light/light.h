@@ -1,7 +1,7 @@
 // Lights: how ONE light emits and is sampled.
 //
 // Lanes of a packet may hold different lights, so a kind of light is a table with one column a field, and its
-// functions take a lane-varying row. Two sorts: area lights (mesh, rectangle, sphere) have `sample_position`
+// functions take a lane-varying row. Two sorts: area lights (mesh, rectangle, sphere, disk) have `sample_position`
 // and `pdf_area`; the others have `sample`, and those at infinity that a ray can meet also `radiance` and
 // `pdf_solid_angle`. To add a kind: write light/NAME_light.h, give it a LightKind, a member and a case in
 // light_tables.h, a line in scene/load_light.cpp, and add it to the chi-squared tests in

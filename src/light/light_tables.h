@@ -3,6 +3,7 @@
 
 #include "base/lookup_table.h"
 #include "light/directional_light.h"
+#include "light/disk_light.h"
 #include "light/distant_disk_light.h"
 #include "light/envmap_light.h"
 #include "light/mesh_light.h"
@@ -19,6 +20,7 @@ enum class LightKind : std::int32_t {
   mesh,
   rectangle,
   sphere,
+  disk,
   point,
   spot,
   directional,
@@ -26,7 +28,7 @@ enum class LightKind : std::int32_t {
   envmap
 };
 
-constexpr bool is_area_light(LightKind kind) { return kind <= LightKind::sphere; }
+constexpr bool is_area_light(LightKind kind) { return kind <= LightKind::disk; }
 /// Met by rays that leave the scene.
 constexpr bool is_infinite_light(LightKind kind) { return kind >= LightKind::distant_disk; }
 
@@ -40,6 +42,7 @@ class LightTables {
   MeshLights meshes;
   RectangleLights rectangles;
   SphereLights spheres;
+  DiskLights disks;
   PointLights points;
   SpotLights spots;
   DirectionalLights directionals;
@@ -61,6 +64,8 @@ class LightTables {
           return f(rectangles, safe_row, lanes);
         case LightKind::sphere:
           return f(spheres, safe_row, lanes);
+        case LightKind::disk:
+          return f(disks, safe_row, lanes);
         case LightKind::point:
           return f(points, safe_row, lanes);
         case LightKind::spot:

@@ -43,6 +43,12 @@ const Plugin rectangle_plugin{"shape",
                               {to_world},
                               surface_children};
 
+const Plugin disk_plugin{"shape",
+                         "disk",
+                         "The disk of radius 1 at z = 0, facing +z, under toWorld; exact.",
+                         {to_world},
+                         surface_children};
+
 Transform world_from_object(const Parameters& parameters) {
   if (!parameters.has("toWorld")) return {};
   const Transform transform = parameters.transform("toWorld");
@@ -56,11 +62,12 @@ std::string label(const Object& object, const std::string& fallback) {
   return object.name.empty() ? fallback : object.name;
 }
 
-/// Throws where floats cannot tell the rectangle's corners apart, or its area is not finite.
+/// Throws where floats cannot tell the shape's corners apart, or its area is not finite.
 void check_area(const Object& object, const Vec3f& along_x, const Vec3f& along_y) {
   const float area_sq = length_sq(cross(along_x, along_y));
   if (!(area_sq > 0) || !std::isfinite(area_sq))
-    throw InputError(object.location, "this rectangle has no area that can be computed with",
+    throw InputError(object.location,
+                     fmt::format("this {} has no area that can be computed with", object.type),
                      "it is too small, too large, or too far from the origin for its size");
 }
 
@@ -100,7 +107,8 @@ Sphere make_sphere(const Parameters& parameters) {
 bool is_bsdf(const Object& object) { return object.family == "bsdf" || object.family == "brdf"; }
 
 const std::vector<Plugin>& shape_plugins() {
-  static const std::vector<Plugin> plugins{obj_plugin, ply_plugin, sphere_plugin, rectangle_plugin};
+  static const std::vector<Plugin> plugins{obj_plugin, ply_plugin, sphere_plugin, rectangle_plugin,
+                                           disk_plugin};
   return plugins;
 }
 
@@ -143,6 +151,14 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
           lights.rectangles.add(corner, is_mirrored ? along_y : along_x, is_mirrored ? along_x : along_y);
       lights.add(*radiance, label(object, numbered), LightKind::rectangle, row);
     }
+  } else if (object.type == disk_plugin.name) {
+    const Parameters parameters(object, disk_plugin, unread);
+    const Disk disk = make_disk(world_from_object(parameters));
+    // As far as floats tell the edge from the centre.
+    check_area(object, (disk.center + disk.along_x) - disk.center,
+               (disk.center + disk.along_y) - disk.center);
+    geometry.add_disk(disk, ids);
+    if (radiance) lights.add(*radiance, label(object, numbered), LightKind::disk, lights.disks.add(disk));
   } else {
     throw unknown_plugin(object, shape_plugins());
   }

@@ -4,7 +4,8 @@
 // Seen to fail when: the alias table's thresholds are all 2^31; what is left of u.y is not stretched back;
 // square_to_triangle does not fold; sin_max_sq has the radius unsquared; pdf_area of the sphere lacks the
 // cosine; the sine at its centre comes from the cosine (near receivers); the rectangle's pdf is 2 / area;
-// some lights are chosen more often; a disk is not uniform, half as bright or wide, or its density 1 % off; a
+// some lights are chosen more often; a disk is not uniform, half as bright or wide, or its density 1 % off, or
+// that of its box, or its radius is u; a
 // point's power is over 2 pi, its distance left out; a spot's power is by the mean of its edges' cosines, or
 // it shines backwards; a direction is reversed or not turned; of a map, the seam is left out, phi runs the
 // other way, the rotation is transposed, sin(theta) is left out of weights or density, the caps are even in
@@ -14,6 +15,7 @@
 
 #include "film/image_file.h"
 #include "geometry/bounds.h"
+#include "geometry/shapes.h"
 #include "integrator/light_sampling.h"
 #include "sphere_cells.h"
 #include "stats/chi_squared.h"
@@ -142,6 +144,38 @@ TEST(RectangleLight, PointsAreUniformOverIt) {
     }
     if (size >= 1)
       expect_counts(observed, std::vector<double>(256, samples / 256.0), "rectangle " + std::to_string(size));
+  }
+}
+
+TEST(DiskLight, PointsAreUniformOverIt) {
+  // A circle, an ellipse, a sheared one, and a mirror image of it.
+  const Transform transforms[] = {
+      scaling({2, 2, 2}), translation({1, 2, 3}) * rotation({1, 1, 0}, 40) * scaling({3, 0.5, 1}),
+      Transform{{{{1, 0.7, 0, 4}, {0, 1, 0, 0}, {0.5, 0, 1, -1}, {0, 0, 0, 1}}}},
+      Transform{{{{-1, 0.7, 0, 4}, {0, 1, 0, 0}, {0.5, 0, 1, -1}, {0, 0, 0, 1}}}}};
+  for (const Transform& transform : transforms) {
+    Alone alone;
+    const Disk disk = make_disk(transform);
+    alone.lights.add({1, 1, 1}, "disk", LightKind::disk, alone.lights.disks.add(disk));
+    const Vec3d along_x = wide(disk.along_x), along_y = wide(disk.along_y), across = cross(along_x, along_y);
+    const Vec3d front = normalize(transform_normal(transform, {0, 0, 1}));
+    // Rings of equal area, each in sectors of equal angle, on the unit disk.
+    std::vector<double> observed(8 * 24);
+    RandomBits random(11);
+    for (int i = 0; i < samples; ++i) {
+      const LightPoint<float> point = alone.sample({0, 0, 40}, random.square());
+      ASSERT_NEAR(point.pdf_area * std::numbers::pi * length(across), 1, 1e-5);
+      ASSERT_NEAR(dot(wide(point.ng), front), 1, 1e-5);
+      const Vec3d p = wide(point.position) - wide(disk.center);
+      ASSERT_NEAR(dot(p, front), 0, 1e-5);
+      const double x = dot(cross(p, along_y), across) / length_sq(across),
+                   y = dot(cross(along_x, p), across) / length_sq(across);
+      ASSERT_LT(x * x + y * y, 1 + 1e-5);
+      const int ring = std::min(int(8 * (x * x + y * y)), 7),
+                sector = std::min(int(24 * (0.5 + std::atan2(y, x) / (2 * std::numbers::pi))), 23);
+      ++observed[std::size_t(24 * ring + sector)];
+    }
+    expect_counts(observed, std::vector<double>(observed.size(), samples / 192.0), "disk");
   }
 }
 

@@ -1,15 +1,15 @@
 // Runs the etendue program as a user does, and keeps what it said.
 #pragma once
 
+#include "support/temporary_folder.h"
+
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -17,40 +17,12 @@
 
 namespace etendue::test {
 
-inline std::string read_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void write_file(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
-
-/// A new empty folder, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "etendue-test-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// How a run ended: `exit_code` is minus the signal's number where one ended it.
 struct ProgramResult {
   int exit_code;
   std::string out, err;
   double seconds;
+  long peak_memory_kib;  ///< Resident.
 };
 
 /// A run of etendue in the folder `where`, without a terminal.
@@ -87,13 +59,14 @@ class Program {
   /// Kills it, for an exit code of -SIGKILL, where it is not done in time.
   ProgramResult wait(double timeout_s = 120) {
     int status = 0;
-    while (waitpid(process_, &status, WNOHANG) == 0) {
+    rusage usage{};
+    while (wait4(process_, &status, WNOHANG, &usage) == 0) {
       if (seconds() > timeout_s) send(SIGKILL);
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     process_ = 0;
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_file(streams_.path() / "out"),
-            read_file(streams_.path() / "err"), seconds()};
+            read_file(streams_.path() / "err"), seconds(), usage.ru_maxrss};
   }
 
   double seconds() const {

@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include "film/image_file.h"
+#include "support/temporary_folder.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -10,12 +11,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <fmt/format.h>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <limits>
 #include <sys/resource.h>
-#include <unistd.h>
 
 namespace etendue {
 namespace {
@@ -41,8 +40,6 @@ std::string error_of(Run&& run) {
 
 class ExrFile : public testing::Test {
  protected:
-  ExrFile() { fs::create_directories(folder); }
-  ~ExrFile() override { fs::remove_all(folder); }
   void write_bytes(const std::string& bytes) {
     fs::remove(file);  // Cutting a file short and filling it again makes some file systems wait for the disk.
     std::ofstream(file, std::ios::binary) << bytes;
@@ -55,7 +52,8 @@ class ExrFile : public testing::Test {
     return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
 
-  const fs::path folder = fs::temp_directory_path() / fmt::format("etendue-exr-test-{}", getpid());
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.path();
   const fs::path file = folder / "image.exr";
 };
 

@@ -1,13 +1,12 @@
 #include "base/error.h"
 #include "film/image_file.h"
+#include "support/temporary_folder.h"
 
 #include <cmath>
-#include <fmt/format.h>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <limits>
 #include <png.h>
-#include <unistd.h>
 
 namespace etendue {
 namespace {
@@ -27,8 +26,6 @@ std::string error_of(Run&& run) {
 
 class PngFile : public testing::Test {
  protected:
-  PngFile() { fs::create_directories(folder); }
-  ~PngFile() override { fs::remove_all(folder); }
   std::vector<int> bytes_of_file() const {
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
@@ -39,7 +36,8 @@ class PngFile : public testing::Test {
     return {bytes.begin(), bytes.end()};
   }
 
-  const fs::path folder = fs::temp_directory_path() / fmt::format("etendue-png-test-{}", getpid());
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.path();
   const fs::path file = folder / "image.png";
 };
 

@@ -1,0 +1,52 @@
+// Disk-shaped (and elliptic) area lights: a point uniform over the whole.
+#pragma once
+
+#include "base/lookup_table.h"
+#include "base/simd_math.h"
+#include "base/warp.h"
+#include "geometry/geometry.h"
+#include "light/light_point.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace etendue {
+
+class DiskLights {
+ public:
+  /// Returns the row. The disk's area must be positive and finite.
+  std::int32_t add(const Disk& disk) {
+    for (const Vec3f& v : {disk.center, disk.along_x, disk.along_y, disk.ng})
+      fields_.insert(fields_.end(), {v.x, v.y, v.z});
+    pdf_area_.push_back(inv_pi / length(cross(disk.along_x, disk.along_y)));
+    return pdf_area_.size() - 1;
+  }
+
+  template <class F>
+  LightPoint<F> sample_position(const Geometry& /*geometry*/, const Int<F>& row, const Vec3<F>& /*reference*/,
+                                const Vec2<UInt<F>>& u, const Mask<F>& /*m*/) const {
+    const Int<F> at = row * Int<F>(12);
+    const auto vec = [&](int offset) {
+      const float* field = fields_.data() + offset;
+      return Vec3<F>{gather(field, at), gather(field + 1, at), gather(field + 2, at)};
+    };
+    const Vec2<F> u_disk{to_unit_float(u.x), to_unit_float(u.y)};
+    // An affine map keeps a uniform density uniform.
+    const Vec2<F> on_disk = square_to_uniform_disk(u_disk);
+    const Vec3<F> ng = vec(9);
+    const Int<F> piece = to_int(u_disk.x * F(4)) * Int<F>(4) + to_int(u_disk.y * F(4));
+    return {vec(0) + vec(3) * on_disk.x + vec(6) * on_disk.y, ng, ng, pdf_area_.at(row), piece};
+  }
+
+  template <class F>
+  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/,
+             const Vec3<F>& /*ng*/) const {
+    return pdf_area_.at(row);
+  }
+
+ private:
+  std::vector<float> fields_;  ///< Centre, the two axes, normal: 12 a row.
+  LookupTable<float> pdf_area_;
+};
+
+}  // namespace etendue
