@@ -9,6 +9,7 @@
 #include "noritest/noritest.h"
 
 #include "render/thread_limit.h"
+#include "stats/quantile.h"
 #include "support/program.h"
 
 #include <cmath>
@@ -152,6 +153,15 @@ TEST_F(NoriTest, SamplesOfASceneAreUniformOverTheWholeFilm) {
     EXPECT_EQ(results[0].subject, "scene");
     EXPECT_FALSE(results[0].is_reference_estimated);
   }
+}
+
+TEST_F(NoriTest, StatisticsOfManySeedsSpreadAsTheTestAssumes) {
+  const std::string test = ttest("1", "<integer name='sampleCount' value='65536'/>" + scene(light_from(0)));
+  constexpr int seeds = 40;
+  double sum_sq = 0;
+  for (int seed = 0; seed < seeds; ++seed) sum_sq += std::pow(run(test, std::uint64_t(seed))[0].statistic, 2);
+  EXPECT_GT(sum_sq, chi_squared_quantile(1e-6, seeds));
+  EXPECT_LT(sum_sq, chi_squared_quantile(1 - 1e-6, seeds));
 }
 
 TEST_F(NoriTest, TheFloorOfTheVarianceDependsOnTheGeneration) {
