@@ -33,29 +33,24 @@ std::string number_text(double value, int digits = 6) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
 }
 
-std::string_view verdict(const CaseResult& result) {
-  return result.is_error ? "ERROR" : result.is_passed ? "ok" : "FAILED";
-}
-
 void print_case(const std::string& file, int number, const CaseResult& result) {
   const std::string subject = result.detail.empty()
                                   ? fmt::format("{} {}", result.subject, result.type)
                                   : fmt::format("{} {} {}", result.subject, result.type, result.detail);
-  std::string numbers;
-  if (result.is_error)
-    numbers = "not run";
-  else if (result.kind == "ttest")
-    numbers = fmt::format("mean {} reference {}{}", number_text(result.mean), number_text(result.reference),
-                          result.is_reference_estimated ? " (itself Monte Carlo)" : "");
-  else
-    numbers = fmt::format("chi-squared {}", number_text(result.statistic));
-  fmt::print("{} {} {} {}: {}, p {}, {}, {:.2f} s\n", file, number, result.kind, subject, numbers,
-             number_text(result.p_value, 3), verdict(result), result.seconds);
-  if (!result.problem.empty() && !result.is_error) fmt::print("  {}\n", result.problem);
-  if (!result.problem.empty() && result.is_error) {
+  if (result.is_error) {
+    fmt::print("{} {} {} {}: not run, ERROR\n", file, number, result.kind, subject);
     std::fflush(stdout);
     fmt::print(stderr, "error: {}\n", result.problem);
+    return;
   }
+  const std::string numbers =
+      result.kind == "ttest"
+          ? fmt::format("mean {} reference {}{}", number_text(result.mean), number_text(result.reference),
+                        result.is_reference_estimated ? " (perhaps itself Monte Carlo)" : "")
+          : fmt::format("chi-squared {}", number_text(result.statistic));
+  fmt::print("{} {} {} {}: {}, p {}, {}, {:.2f} s\n", file, number, result.kind, subject, numbers,
+             number_text(result.p_value, 3), result.is_passed ? "ok" : "FAILED", result.seconds);
+  if (!result.problem.empty()) fmt::print("  {}\n", result.problem);
   std::fflush(stdout);
 }
 

@@ -30,7 +30,7 @@ struct CaseResult {
   double statistic = std::numeric_limits<double>::quiet_NaN();
   double p_value = std::numeric_limits<double>::quiet_NaN();
   bool is_passed = false;
-  bool is_reference_estimated = false;  ///< The file's reference is itself a Monte Carlo estimate.
+  bool is_reference_estimated = false;  ///< A BSDF's: files have these from Monte Carlo runs.
   /// Why the case failed where it was not the p-value alone; an error message where it could not be run.
   std::string problem{};
   bool is_error = false;  ///< The case could not be run: bad input, or a subject that cannot be tested so.
