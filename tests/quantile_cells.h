@@ -63,8 +63,7 @@ class QuantileCells {
 
   static std::vector<double> lines(std::vector<double> values, std::vector<double> result) {
     std::sort(values.begin(), values.end());
-    for (const double q :
-         {0.0, 0.0005, 0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 0.9995, 1.0})
+    for (const double q : {0.0, 0.0005, 0.02, 0.1, 0.25, 0.4, 0.6, 0.75, 0.9, 0.98, 0.9995, 1.0})
       result.push_back(values[std::size_t(q * double(values.size() - 1))]);
     std::sort(result.begin(), result.end());
     result.erase(std::unique(result.begin(), result.end()), result.end());
@@ -116,7 +115,7 @@ class QuantileCells {
     return sum;
   }
 
-  static constexpr int most_splits = 12, most_unforced_splits = 10;
+  static constexpr int most_splits = 12, most_unforced_splits = 9;
   std::vector<double> rows_, columns_;
   std::vector<Vec2<double>> pilot_;  ///< Depths and turns.
 };

@@ -39,12 +39,13 @@ struct RoughConductor {
 
   template <class F>
   BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
-    const Vec3<F> h = distribution.sample_visible(wo_local, u_bsdf);
-    const F cos_h = dot(wo_local, h);
-    const Vec3<F> wi_local = h * (F(2) * cos_h) - wo_local;
+    const Vec3<F> wo{wo_local.x, wo_local.y, abs(wo_local.z)};  // From below it only must stay a number.
+    const Vec3<F> h = distribution.sample_visible(wo, u_bsdf);
+    const F cos_h = dot(wo, h);
+    const Vec3<F> wi_local = h * (F(2) * cos_h) - wo;
     const Mask<F> is_above = mask_and(wo_local.z > F(0), wi_local.z > F(0));
     const F shadowing = distribution.shadowing_over_cos(wi_local.z) * wi_local.z;
-    const F pdf = distribution.density(h) * distribution.shadowing_over_cos(wo_local.z) * F(0.25f);
+    const F pdf = distribution.density(h) * distribution.shadowing_over_cos(wo.z) * F(0.25f);
     return {wi_local, select(is_above, fresnel(cos_h) * shadowing, black<F>()), select(is_above, pdf, F(0))};
   }
 

@@ -72,6 +72,7 @@ struct Decoder {
   bool read_rows(png_bytepp rows) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_read_image(png, rows);
+    png_read_end(png, nullptr);
     return true;
   }
 };

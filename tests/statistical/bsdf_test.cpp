@@ -328,8 +328,8 @@ TEST(Bsdf, RoughSurfacesLoseOnlyWhatIsShadowed) {
         EXPECT_LE(kept, 1.0001) << what;
         // Shadowing takes some alpha^2 (GGX more) where light comes from straight above.
         if (std::abs(wo.z) == 1) {
-          EXPECT_GT(energy / samples, 1 - 1.5 * alpha * alpha) << what;
-          EXPECT_GT(kept, 1 - 1.5 * alpha * alpha) << what;
+          EXPECT_GT(energy / samples, 1 - 2 * alpha * alpha) << what;
+          EXPECT_GT(kept, 1 - 2 * alpha * alpha) << what;
         }
       }
     }
@@ -396,9 +396,8 @@ TEST(Bsdf, IsANumberAtTheEdges) {
           const auto drawn = sample(model.bsdf, wo, {x, y});
           EXPECT_GE(drawn.pdf_solid_angle, 0) << model.name << " " << wo.z << " " << x << " " << y;
           EXPECT_TRUE(is_fine(drawn.weight)) << model.name << " " << wo.z << " " << x << " " << y;
-          if (drawn.pdf_solid_angle > 0) {
-            EXPECT_NEAR(length(wide(drawn.wi_local)), 1, 1e-5) << model.name;
-          }
+          EXPECT_NEAR(length(wide(drawn.wi_local)), 1, 1e-5)
+              << model.name << " " << wo.z << " " << x << " " << y;
         }
       for (const Vec3f& wi : edges) {
         EXPECT_TRUE(is_fine(eval(model.bsdf, wo, wi))) << model.name << " " << wo.z << " " << wi.z;

@@ -92,7 +92,7 @@ TEST(Texture, ImagesWrapAsAsked) {
                                                           {-0.3f, 0.1f, 5, 4, 4},
                                                           {0.3f, 1.1f, 4, 0, 0},
                                                           {0.3f, -0.1f, 0, 4, 4},
-                                                          {-1.3f, -2.1f, 5, 1, 4},
+                                                          {-1.3f, -2.1f, 1, 5, 4},
                                                           {1e6f, 0.1f, 4, 4, 5}}) {
     EXPECT_EQ(at(repeat, u, v).r, float(repeated)) << u << " " << v;
     EXPECT_EQ(at(mirror, u, v).r, float(mirrored)) << u << " " << v;
