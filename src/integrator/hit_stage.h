@@ -69,15 +69,14 @@ template <class F>
     const Int<F> light = gather(scene.geometry.light.data(), select(is_hit, geometry, Int<F>(0)));
     const Mask<F> is_light = mask_and(is_hit, less(Int<F>(-1), light));
     if (!any(is_light)) continue;
-    const HitNormals<F> normals(scene, path.hit, i, is_light);
+    const Vec3<F> ng = normalize(load_lanes<F>(path.hit.ng, i));
     const Vec3<F> direction = load_lanes<F>(path.ray.direction, i);
-    const Mask<F> is_front =
-        mask_and(is_light, dot(normals.ng, direction) < F(0), dot(normals.ns, direction) < F(0));
+    const Mask<F> is_front = mask_and(is_light, dot(ng, direction) < F(0));
     if (!any(is_front)) continue;
     const F weight = met_light_weight<F>(rules, path, i, is_front, [&] {
       const Vec3<F> hit =
           load_lanes<F>(path.ray.origin, i) + direction * load_lanes<F>(&path.hit.t[i]);
-      return light_pdf_solid_angle<F>(scene, light, load_lanes<F>(path.from, i), hit, normals.ng, direction,
+      return light_pdf_solid_angle<F>(scene, light, load_lanes<F>(path.from, i), hit, ng, direction,
                                       is_front);
     });
     add_radiance<F>(block, i, is_front,

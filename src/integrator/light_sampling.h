@@ -31,7 +31,8 @@ F light_pdf_solid_angle(const Scene& scene, const Int<F>& light, const Vec3<F>& 
                         const Vec3<F>& position, const Vec3<F>& ng, const Vec3<F>& wi, const Mask<F>& m) {
   const F pdf_area = F(uniform_light_pmf(scene.lights.count())) *
                      scene.lights.pdf_area<F>(light, reference, position, ng, m);
-  return solid_angle_from_area(pdf_area, length_sq(position - reference), -dot(ng, wi));
+  return select(is_front_facing(position, ng, reference),
+                solid_angle_from_area(pdf_area, length_sq(position - reference), -dot(ng, wi)), F(0));
 }
 
 /// W/(m^2 sr) that a ray leaving the scene in `direction` (unit) meets of the infinite light k,

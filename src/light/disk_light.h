@@ -35,7 +35,7 @@ class DiskLights {
     const Vec2<F> on_disk = square_to_uniform_disk(u_disk);
     const Vec3<F> ng = vec(9);
     const Int<F> piece = to_int(u_disk.x * F(4)) * Int<F>(4) + to_int(u_disk.y * F(4));
-    return {vec(0) + vec(3) * on_disk.x + vec(6) * on_disk.y, ng, ng, pdf_area_.at(row), piece};
+    return {vec(0) + vec(3) * on_disk.x + vec(6) * on_disk.y, ng, pdf_area_.at(row), piece};
   }
 
   template <class F>

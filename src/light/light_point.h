@@ -11,7 +11,6 @@ template <class F>
 struct LightPoint {
   Vec3<F> position;  ///< World, m.
   Vec3<F> ng;        ///< Unit geometric normal; what the Jacobian uses.
-  Vec3<F> ns;    ///< Interpolated normal, any length; the light shines where both normals face the receiver.
   F pdf_area;    ///< 1/m^2; 0: no sample (a receiver inside of a sphere).
   Int<F> piece;  ///< 0 .. light_pieces - 1: near points of a light have near pieces; orders shadow rays only.
 };
@@ -21,13 +20,22 @@ inline constexpr int light_pieces = 16;
 template <class F>
 LightPoint<F> no_light_point() {
   const Vec3<F> zero{F(0), F(0), F(0)};
-  return {zero, zero, zero, F(0), Int<F>(0)};
+  return {zero, zero, F(0), Int<F>(0)};
 }
 
 template <class F>
 LightPoint<F> select(const Mask<F>& m, const LightPoint<F>& a, const LightPoint<F>& b) {
-  return {select(m, a.position, b.position), select(m, a.ng, b.ng), select(m, a.ns, b.ns),
+  return {select(m, a.position, b.position), select(m, a.ng, b.ng),
           select(m, a.pdf_area, b.pdf_area), select(m, a.piece, b.piece)};
+}
+
+/// Whether the front of a light at `position`, with geometric normal `ng`, faces a receiver at `reference`. Not
+/// one that lies in the light's own plane within rounding: its cosine would be an error over a small number.
+template <class F>
+Mask<F> is_front_facing(const Vec3<F>& position, const Vec3<F>& ng, const Vec3<F>& reference) {
+  constexpr float rounding = 1e-6f;
+  const F height = dot(ng, reference - position);
+  return height > F(rounding) * (abs(reference.x) + abs(reference.y) + abs(reference.z));
 }
 
 /// Density per solid angle (1/sr) at the receiver from one per area (1/m^2) on the light.

@@ -61,7 +61,7 @@ LightSample<F> light_sample_at(const LightPoint<F>& point, const Int<F>& light, 
   const Vec3<F> wi = to_light * inv_distance;
   const F cos_theta_light = -dot(point.ng, wi);
   const Mask<F> is_there =
-      mask_and(m, cos_theta_light > F(0), dot(point.ns, wi) < F(0), point.pdf_area > F(0));
+      mask_and(m, is_front_facing(point.position, point.ng, reference), point.pdf_area > F(0));
 
   const F geometry_term = cos_theta_light * inv_distance * inv_distance;
   const F pdf_area = pmf * point.pdf_area;

@@ -51,8 +51,6 @@ class PieceGrid {
 std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id) {
   const auto first = std::size_t(geometry.first_triangle[std::size_t(geometry_id)]);
   const auto count = std::size_t(geometry.triangles[std::size_t(geometry_id)]);
-  geometry_id_.push_back(geometry_id);
-  has_normals_.push_back(geometry.has_normals[std::size_t(geometry_id)]);
   first_triangle_.push_back(std::int32_t(alias_.size()));
   triangle_count_.push_back(std::int32_t(count));
   std::vector<double> areas;

@@ -53,13 +53,6 @@ class MeshLights {
     LightPoint<F> point;
     point.position = origin + edge_1 * barycentric.x + edge_2 * barycentric.y;
     point.ng = normalize(cross(edge_1, edge_2));
-    point.ns = point.ng;
-    const auto is_smooth = mask_and(m, equal(has_normals_.at(row), I(1)));
-    if (any(is_smooth)) {
-      const I geometry_id = geometry_id_.at(row);
-      const Vec3<F> ns = interpolate_normal<F>(geometry, geometry_id, triangle, barycentric, is_smooth);
-      point.ns = select(is_smooth, ns, point.ng);
-    }
     point.pdf_area = pdf_area_.at(row);
     const I pieces = gather(pieces_.data(), first + triangle);
     point.piece = (pieces & I(0xff)) + to_int(u_triangle.y * to_float(pieces >> 8));
@@ -75,7 +68,7 @@ class MeshLights {
 
  private:
   // Per light.
-  LookupTable<std::int32_t> geometry_id_, has_normals_, first_triangle_, triangle_count_;
+  LookupTable<std::int32_t> first_triangle_, triangle_count_;
   LookupTable<float> pdf_area_;
   std::int32_t finely_built_count_ = 0;
   // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first

@@ -33,7 +33,7 @@ class RectangleLights {
     const F x = to_unit_float(u.x), y = to_unit_float(u.y);
     const Vec3<F> ng = vec(9);
     const Int<F> piece = to_int(x * F(4)) * Int<F>(4) + to_int(y * F(4));
-    return {vec(0) + vec(3) * x + vec(6) * y, ng, ng, pdf_area_.at(row), piece};
+    return {vec(0) + vec(3) * x + vec(6) * y, ng, pdf_area_.at(row), piece};
   }
 
   template <class F>

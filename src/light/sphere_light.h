@@ -44,7 +44,6 @@ class SphereLights {
     LightPoint<F> point;
     point.position = cone.center + ng * cone.radius;
     point.ng = ng;
-    point.ns = ng;
     point.pdf_area = pdf_area<F>(row, reference, point.position, ng);
     point.piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));
     return point;

@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Ex3, ExerciseScene, ::testing::Values("area_sampling.xm
 
 /// A rectangle, a sphere and a smooth mesh as lights; diffuse, glossy and smooth surfaces.
 LoadedScene everything_scene(int side_px = 64) {
-  // An octahedron with vertex normals: the light shines where both normals face the receiver.
+  // An octahedron with vertex normals: the light shines by the geometric one.
   const std::string octahedron =
       "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\nvn 1 0 0\nvn -1 0 0\nvn 0 1 0\nvn 0 -1 0\nvn "
       "0 0 1\nvn 0 0 -1\n"

@@ -188,7 +188,7 @@ void light_position(const Scene& scene, Packet& p) {
   const Vec3<F> reference = p.vec();
   const LightPoint<F> point =
       scene.lights.sample_position<F>(scene.geometry, light, reference, p.words(), every_lane());
-  p.give(point.position), p.give(point.ng), p.give(point.ns);
+  p.give(point.position), p.give(point.ng);
 }
 void light_pdf(const Scene& scene, Packet& p) {
   const I light = as_int(p.word());
