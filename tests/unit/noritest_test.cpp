@@ -3,9 +3,9 @@
 //
 // False-alarm rate of this file: below 1e-4 (40 right p-values that must exceed 1e-6, a few judged by their
 // file's own level of 0.01 where the samples have no variance), fixed seeds.
-// Seen to fail when: Diffuse's samples weigh 1 % too much; its density is 1 % too large; Phong's density takes
-// n for n + 1; the pixel covers only one pixel of the film; every task takes the same seed; cells are even in
-// theta under every dialect.
+// Seen to fail when: Diffuse's samples weigh 1 % too much; its density is 1 % too large; Phong's density
+// takes n for n + 1; the pixel covers only one pixel of the film; every task takes the same seed; cells are
+// even in theta under every dialect.
 #include "noritest/noritest.h"
 
 #include "render/thread_limit.h"
