@@ -7,6 +7,7 @@
 #include "render/isa.h"
 #include "render/render.h"
 #include "sampler/sampler.h"
+#include "scene/load_light.h"
 #include "scene/load_shape.h"
 
 #include <fmt/format.h>

@@ -213,6 +213,7 @@ int run(const Options& options) {
   const SceneDesc description = read_nori_xml(options.scene_file, dialect);
   const ThreadLimit thread_limit(options.threads);
   LoadedScene loaded = load_scene(description);
+  check_has_light(description, loaded.scene);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
   std::vector<UnreadKey> unread;

@@ -36,6 +36,12 @@ xsimd::batch_bool<float, A> mask_and(const xsimd::batch_bool<float, A>& a,
                                      const xsimd::batch_bool<float, A>& b) {
   return a & b;
 }
+inline bool mask_or(bool a, bool b) { return a || b; }
+template <class A>
+xsimd::batch_bool<float, A> mask_or(const xsimd::batch_bool<float, A>& a,
+                                    const xsimd::batch_bool<float, A>& b) {
+  return a | b;
+}
 inline bool mask_not(bool a) { return !a; }
 template <class A>
 xsimd::batch_bool<float, A> mask_not(const xsimd::batch_bool<float, A>& a) {

@@ -62,6 +62,13 @@ void sincos_turns(const xsimd::batch<float, A>& t, xsimd::batch<float, A>& sine,
   cosine = pair.second;
 }
 
+/// The angle of (x, y) from the x axis, in (-pi, pi].
+inline float atan2(float y, float x) { return std::atan2(y, x); }
+template <class A>
+xsimd::batch<float, A> atan2(const xsimd::batch<float, A>& y, const xsimd::batch<float, A>& x) {
+  return xsimd::atan2(y, x);
+}
+
 /// 32 random bits as a float in [0, 1): the upper 24 bits.
 template <class U>
 auto to_unit_float(const U& bits) {

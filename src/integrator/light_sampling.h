@@ -7,66 +7,48 @@
 
 namespace etendue {
 
-/// A sample of the light that arrives at a reference point, visibility left out.
+/// A sample of a light already chosen, each lane its own. \param u_y the second random number; the first is
+/// what the choice left over \param choice with pmf 1 where all lights are sampled, one after the other
 template <class F>
-struct LightSample {
-  Vec3<F> position;  ///< On the light, world (m).
-  Vec3<F> wi;        ///< Unit, from the reference point to the light.
-  /// Emitted radiance times cos(theta'') / distance^2 over the density per area; the cosine at the receiver
-  /// is left to the caller. 0 where the light faces away.
-  Color<F> radiance_over_pdf;
-  F pdf_area;           ///< 1/m^2, the probability of the light included.
-  F distance_sq;        ///< m^2
-  F cos_theta_light;    ///< Between the light's geometric normal and the direction to the reference point.
-  Mask<F> is_facing;    ///< Elsewhere the light faces away, and there is no sample.
-  Int<F> light, piece;  ///< Near samples of one light have near pieces.
+LightSample<F> sample_chosen_light(const Scene& scene, const LightChoice<F>& choice, const Vec3<F>& reference,
+                                   const UInt<F>& u_y, const Mask<F>& m) {
+  return scene.lights.sample<F>(scene.geometry, choice.light, choice.pmf, reference, {choice.u_left, u_y}, m);
+}
 
-  /// The density of `wi` (1/sr) at the reference point; 0: no sample.
-  F pdf_solid_angle() const {
-    return select(is_facing, solid_angle_from_area(pdf_area, distance_sq, cos_theta_light), F(0));
-  }
-};
-
-/// Area sampling of the lights: uniform choice of a light, a point on it by `sample_position`, the geometry
-/// term without the receiver's cosine, and the probability from `pdf_area`. \param u_light one 2-D sample,
-/// which chooses the light and places the point
+/// Uniform choice of a light, then a sample of it. \param u_light one 2-D sample, which chooses the light and
+/// places the point or direction
 template <class F>
 LightSample<F> sample_lights(const Scene& scene, const Vec3<F>& reference, const Vec2<UInt<F>>& u_light,
                              const Mask<F>& m) {
-  const LightChoice<F> choice = choose_light_uniformly<F>(scene.lights.count(), u_light.x);
-  const LightPoint<F> point =
-      scene.lights.sample_position<F>(scene.geometry, choice.light, reference, {choice.u_left, u_light.y}, m);
-
-  const Vec3<F> to_light = point.position - reference;
-  const F distance_sq = length_sq(to_light);
-  const F inv_distance = F(1) / sqrt(distance_sq);
-  const Vec3<F> wi = to_light * inv_distance;
-  const F cos_theta_light = -dot(point.ng, wi);
-  const Mask<F> is_facing =
-      mask_and(m, cos_theta_light > F(0), dot(point.ns, wi) < F(0), point.pdf_area > F(0));
-
-  const F geometry_term = cos_theta_light * inv_distance * inv_distance;
-  const F pdf_area = choice.pmf * point.pdf_area;
-  return {.position = point.position,
-          .wi = wi,
-          .radiance_over_pdf =
-              scene.lights.radiance<F>(choice.light, m) * select(is_facing, geometry_term / pdf_area, F(0)),
-          .pdf_area = pdf_area,
-          .distance_sq = distance_sq,
-          .cos_theta_light = cos_theta_light,
-          .is_facing = is_facing,
-          .light = choice.light,
-          .piece = point.piece};
+  return sample_chosen_light<F>(scene, choose_light_uniformly<F>(scene.lights.count(), u_light.x), reference,
+                                u_light.y, m);
 }
 
-/// The density (1/sr) with which `sample_lights` gives the direction `wi` from `reference`, which meets
-/// `light` at `position` with geometric normal `ng`; the probability of the light included.
+/// The density (1/sr) with which `sample_lights` gives the direction `wi` from `reference`, which meets the
+/// area light `light` at `position` with geometric normal `ng`; the probability of the light included.
 template <class F>
 F light_pdf_solid_angle(const Scene& scene, const Int<F>& light, const Vec3<F>& reference,
                         const Vec3<F>& position, const Vec3<F>& ng, const Vec3<F>& wi, const Mask<F>& m) {
   const F pdf_area = F(uniform_light_pmf(scene.lights.count())) *
                      scene.lights.pdf_area<F>(light, reference, position, ng, m);
   return solid_angle_from_area(pdf_area, length_sq(position - reference), -dot(ng, wi));
+}
+
+/// W/(m^2 sr) that a ray leaving the scene in `direction` (unit) meets of the infinite light k,
+/// 0 <= k < scene.lights.infinite_count().
+template <class F>
+Color<F> environment_radiance(const Scene& scene, std::int32_t k, const Vec3<F>& direction,
+                              const Mask<F>& m) {
+  return scene.lights.infinite_radiance<F>(k, direction, m);
+}
+
+/// The density (1/sr) with which `sample_lights` gives `direction` by the infinite light k; the probability
+/// of the light included.
+template <class F>
+F environment_pdf_solid_angle(const Scene& scene, std::int32_t k, const Vec3<F>& direction,
+                              const Mask<F>& m) {
+  return F(uniform_light_pmf(scene.lights.count())) *
+         scene.lights.infinite_pdf_solid_angle<F>(k, direction, m);
 }
 
 }  // namespace etendue

@@ -29,7 +29,7 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
 
     const Frame<F> frame(surface.ns);
     const Vec3<F> wo_local = frame.local_from_world(surface.wo), wi_local = frame.local_from_world(sample.wi);
-    const Mask<F> is_lit = mask_and(sample.is_facing, surface.reflects_towards(sample.wi));
+    const Mask<F> is_lit = mask_and(sample.is_there, surface.reflects_towards(sample.wi));
     Color<F> reflected = black<F>();
     for_each_material<F>(scene.materials, surface.material, Vec2<F>{F(0), F(0)}, is_lit,
                          [&](const auto& bsdf, const Mask<F>& lanes) {
@@ -48,7 +48,7 @@ void sample_lights(const Scene& scene, SampleBlock& block, Combination combinati
     store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, mask_not(is_black(reflected))));
     const Vec3<F> origin = surface.offset_origin();
     store_lanes(block.shadow_origin, i, origin);
-    store_lanes(block.shadow_direction, i, sample.position - origin);
+    store_lanes(block.shadow_direction, i, sample.end - origin);
     store_lanes(&block.aim[i], sample.light * Int<F>(light_pieces) + sample.piece);
   }
   block.clock.finish(Stage::light_samples);

@@ -65,7 +65,7 @@ SampleTrace::LightSample light_sample_of(const Scene& scene, const SampleBlock& 
   const LightSample<F> sample =
       sample_lights<F>(scene, surface.position, sample_bits<F>(scene, block, 0, dimension::light), true);
   return {sample.light,
-          sample.position,
+          sample.end,
           sample.radiance_over_pdf,
           sample.pdf_solid_angle(),
           load_lanes<F>(block.unshadowed, 0),

@@ -1,5 +1,7 @@
 #include "scene/load_scene.h"
 
+#include "geometry/bounds.h"
+#include "scene/load_light.h"
 #include "scene/load_shape.h"
 
 #include <chrono>
@@ -32,10 +34,7 @@ class Loader {
                        "add <camera type=\"perspective\"> with a toWorld transform");
     if (geometry_.count() == 0)
       throw InputError(root.location, "the scene has no shapes", "add <mesh type=\"obj\"> with a filename");
-    if (lights_.count() == 0)
-      throw InputError(root.location, "the scene has no light: its image would be black",
-                       fmt::format("put <{} type=\"area\"> with a radiance inside a mesh or shape",
-                                   description_.dialect == Dialect::nori_2012 ? "luminaire" : "emitter"));
+    lights_.set_scene_bounds(bounding_sphere(geometry_));
     const Clock::time_point start = Clock::now();
     RayCaster rays(geometry_);
     const double seconds_build = seconds_since(start);
@@ -51,7 +50,11 @@ class Loader {
  private:
   static const Plugin& scene_plugin() {
     static const Plugin plugin{
-        "scene", "", "", {}, {"integrator", "sampler", "camera", "mesh", "shape", "rfilter"}};
+        "scene",
+        "",
+        "",
+        {},
+        {"integrator", "sampler", "camera", "mesh", "shape", "emitter", "luminaire", "rfilter"}};
     return plugin;
   }
 
@@ -72,6 +75,11 @@ class Loader {
     } else if (child.family == "integrator") {
       once(integrator_.has_value(), child);
       integrator_ = child;
+    } else if (is_light(child)) {
+      if (child.type == area_light_name)
+        throw InputError(child.location, "an area light is a shape: it has no place inside <scene>",
+                         "put it inside a <mesh> or <shape>, which then shines");
+      add_light(child, description_.directory, lights_, unread_);
     } else {
       const Clock::time_point start = Clock::now();
       add_shape(child);
@@ -114,9 +122,11 @@ class Loader {
     SurfaceIds ids{.material = std::int32_t(materials_.size())};
     materials_.push_back(bsdf ? make_bsdf(*bsdf, description_.directory, unread_) : Bsdf{Diffuse{}});
     std::optional<Colorf> radiance;
-    if (light) {
+    if (light && light->type == area_light_name) {
       radiance = area_light_radiance(*light, unread_);
       ids.light = lights_.count();
+    } else if (light) {
+      add_light(*light, description_.directory, lights_, unread_);
     }
     add_shape_geometry(object, description_.directory, ids, radiance, geometry_, lights_, unread_, warnings_);
   }
@@ -152,5 +162,12 @@ class Loader {
 }  // namespace
 
 LoadedScene load_scene(const SceneDesc& description) { return Loader(description).load(); }
+
+void check_has_light(const SceneDesc& description, const Scene& scene) {
+  if (scene.lights.count() > 0) return;
+  throw InputError(description.root.location, "the scene has no light: its image would be black",
+                   fmt::format("put <{} type=\"area\"> with a radiance inside a mesh or shape",
+                               description.dialect == Dialect::nori_2012 ? "luminaire" : "emitter"));
+}
 
 }  // namespace etendue

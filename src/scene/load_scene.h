@@ -23,4 +23,7 @@ struct LoadedScene {
 /// anything missing, repeated, unknown or degenerate: the message names the object and its place.
 LoadedScene load_scene(const SceneDesc& description);
 
+/// Throws InputError where `scene`, read from `description`, has no light: for integrators that need one.
+void check_has_light(const SceneDesc& description, const Scene& scene);
+
 }  // namespace etendue

@@ -2,6 +2,7 @@
 
 #include "geometry/obj_reader.h"
 #include "geometry/shapes.h"
+#include "scenefile/existing_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,11 +34,6 @@ const Plugin rectangle_plugin{"shape",
                               "The square [-1, 1] x [-1, 1] at z = 0, facing +z, under toWorld.",
                               {to_world},
                               surface_children};
-const Plugin area_plugin{"light",
-                         "area",
-                         "The shape shines from its front side, alike in all directions.",
-                         {{"radiance", Type::color, "1", "W/(m^2 sr)", "Emitted radiance"}},
-                         {}};
 
 Transform world_from_object(const Parameters& parameters) {
   if (!parameters.has("toWorld")) return {};
@@ -50,21 +46,6 @@ Transform world_from_object(const Parameters& parameters) {
 
 std::string label(const Object& object, const std::string& fallback) {
   return object.name.empty() ? fallback : object.name;
-}
-
-/// The object's file, found beside the scene.
-std::filesystem::path existing_file(const Parameters& parameters, const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / parameters.text("filename");
-  std::error_code error;
-  if (!std::filesystem::exists(file, error))
-    throw InputError(parameters.location("filename"),
-                     fmt::format("'{}' is not there", parameters.text("filename")),
-                     fmt::format("looked for {}; paths are relative to the scene file", file.string()));
-  if (std::filesystem::is_directory(file, error))
-    throw InputError(parameters.location("filename"),
-                     fmt::format("'{}' is a folder", parameters.text("filename")),
-                     "give the name of an OBJ file");
-  return file;
 }
 
 /// Throws where floats cannot tell the rectangle's corners apart, or its area is not finite.
@@ -109,21 +90,10 @@ Sphere make_sphere(const Parameters& parameters) {
 }  // namespace
 
 bool is_bsdf(const Object& object) { return object.family == "bsdf" || object.family == "brdf"; }
-bool is_light(const Object& object) { return object.family == "luminaire" || object.family == "emitter"; }
 
 const std::vector<Plugin>& shape_plugins() {
   static const std::vector<Plugin> plugins{obj_plugin, sphere_plugin, rectangle_plugin};
   return plugins;
-}
-
-const std::vector<Plugin>& light_plugins() {
-  static const std::vector<Plugin> plugins{area_plugin};
-  return plugins;
-}
-
-Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& unread) {
-  if (description.type != area_plugin.name) throw unknown_plugin(description, light_plugins());
-  return nonnegative_color(Parameters(description, area_plugin, unread), "radiance");
 }
 
 void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
@@ -132,7 +102,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
   const std::string numbered = fmt::format("{} {}", object.type, geometry.count() + 1);
   if (object.type == obj_plugin.name) {
     const Parameters parameters(object, obj_plugin, unread);
-    const std::filesystem::path file = existing_file(parameters, directory);
+    const std::filesystem::path file = existing_file(parameters, "filename", directory, "an OBJ file");
     const Mesh mesh = read_obj(file, world_from_object(parameters));
     const std::string name = label(object, file.stem().string());
     if (mesh.dropped_triangles > 0)

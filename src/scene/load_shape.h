@@ -12,14 +12,9 @@
 
 namespace etendue {
 
-bool is_bsdf(const Object& object);   ///< <bsdf> or <brdf>
-bool is_light(const Object& object);  ///< <luminaire> or <emitter>
+bool is_bsdf(const Object& object);  ///< <bsdf> or <brdf>
 
 const std::vector<Plugin>& shape_plugins();
-const std::vector<Plugin>& light_plugins();
-
-/// W/(m^2 sr). Throws InputError for an unknown light or a negative radiance.
-Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& unread);
 
 /// Reads or makes the shape `object` and adds it to `geometry`, and to `lights` where it has a radiance.
 /// Throws InputError for an unknown shape, a file that cannot be read, a singular transform, a light without

@@ -7,6 +7,8 @@
 // some lights are chosen more often.
 #include "light/light.h"
 
+#include "film/image_file.h"
+#include "geometry/bounds.h"
 #include "integrator/light_sampling.h"
 #include "sphere_cells.h"
 #include "stats/chi_squared.h"
@@ -15,8 +17,11 @@
 #include "test_scene.h"
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
+#include <iterator>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -198,6 +203,409 @@ TEST(SphereLight, GivesNoSampleInside) {
               0);
 }
 
+/// The light alone among many, as an environment: its directions against its density.
+LightSample<float> sample_of(const Alone& alone, const Vec2<std::uint32_t>& u) {
+  return alone.lights.sample<float>(alone.geometry, 0, 1, {0.5f, -1, 2}, u, true);
+}
+
+void expect_directions_follow_density(const Alone& alone, const std::string& what, int steps,
+                                      double tolerance_of_total, int sample_count = samples) {
+  const auto cells = even_cells();
+  const auto pdf = [&](const Vec3d& d) {
+    return double(
+        alone.lights.infinite_pdf_solid_angle<float>(0, {float(d.x), float(d.y), float(d.z)}, true));
+  };
+  std::vector<double> expected = cells.integrals(pdf, steps);
+  double total = 0;
+  for (double& e : expected) {
+    total += e;
+    e *= sample_count;
+  }
+  EXPECT_NEAR(total, 1, tolerance_of_total) << what;
+  std::vector<double> observed(cells.size());
+  RandomBits random(11);
+  int odd_densities = 0, odd_radiances = 0;
+  for (int i = 0; i < sample_count; ++i) {
+    const LightSample<float> sample = sample_of(alone, random.square());
+    ASSERT_TRUE(sample.is_there) << what;
+    ASSERT_NEAR(length(wide(sample.wi)), 1, 1e-5) << what;
+    ASSERT_TRUE(sample.piece >= 0 && sample.piece < light_pieces) << sample.piece;
+    ++observed[cells.cell_of(wide(sample.wi))];
+    // Both sides of every MIS weight see one density; rounding may move a direction over the rim of a disk.
+    const double stated = sample.pdf_solid_angle(), found = pdf(wide(sample.wi));
+    odd_densities += !(std::abs(stated - found) < 2e-3 * stated);
+    const Colorf radiance = alone.lights.infinite_radiance<float>(0, sample.wi, true);
+    odd_radiances += !(std::abs(sample.radiance_over_pdf.g * stated - radiance.g) < 2e-3 * radiance.g + 1e-6);
+  }
+  EXPECT_LT(odd_densities, 1e-3 * sample_count) << what;
+  EXPECT_LT(odd_radiances, 1e-3 * sample_count) << what;
+  expect_counts(observed, expected, what);
+}
+
+[[gnu::noinline]] void add_disk(Alone& alone, const DistantDisk& disk) {
+  alone.lights.add(disk.radiance, "disk", LightKind::distant_disk, alone.lights.distant_disks.add(disk));
+}
+
+TEST(DistantDisk, DirectionsFollowTheDensity) {
+  const Vec3d axis = normalize(Vec3d{1, -2, -2});
+  for (const double half_angle_deg : {40.0, 90.0, 150.0, 180.0}) {
+    Alone alone;
+    add_disk(alone, {{float(axis.x), float(axis.y), float(axis.z)},
+                     float(half_angle_deg / 180 * std::numbers::pi),
+                     {1, 2, 3}});
+    // The rim cuts through cells: many steps.
+    expect_directions_follow_density(alone, "disk of " + std::to_string(half_angle_deg) + " degrees", 60,
+                                     1e-3);
+  }
+}
+
+TEST(DistantDisk, TheSunIsRoundAndOfItsSize) {
+  Alone alone;
+  const double half_angle = 0.27 / 180 * std::numbers::pi;
+  add_disk(alone, {{0, 0.6f, 0.8f}, float(half_angle), {1, 1, 1}});
+  const double solid_angle = 4 * std::numbers::pi * std::pow(std::sin(half_angle / 2), 2);
+  const WideFrame frame(normalize(Vec3d{0, double(0.6f), double(0.8f)}));
+  std::vector<double> observed(64);
+  RandomBits random(12);
+  for (int i = 0; i < samples; ++i) {
+    const LightSample<float> sample = sample_of(alone, random.square());
+    ASSERT_NEAR(sample.pdf_solid_angle() * solid_angle, 1, 1e-5);
+    const Vec3d d = frame.local_from_world(wide(sample.wi));
+    const double ring = (d.x * d.x + d.y * d.y) / std::pow(std::sin(half_angle), 2),
+                 turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
+    ++observed[std::size_t(std::clamp(int(ring * 8), 0, 7) * 8 + std::clamp(int(turn * 8), 0, 7))];
+  }
+  expect_counts(observed, std::vector<double>(64, samples / 64.0), "sun");
+}
+
+/// Random texels, one row of zeros, and one texel that has half of all light.
+std::vector<float> random_map(int width, int height, bool has_hot_texel) {
+  std::mt19937 engine(13);
+  std::uniform_real_distribution<float> uniform;
+  std::vector<float> rgb;
+  for (int i = 0; i < 3 * width * height; ++i) rgb.push_back(uniform(engine));
+  if (height > 2)
+    for (int i = 0; i < 3 * width; ++i) rgb[std::size_t(3 * width * (height / 2) + i)] = 0;
+  if (has_hot_texel)
+    for (std::size_t k = 0; k < 3; ++k)
+      rgb[k + 3 * std::size_t(width * (height / 3) + 1)] = float(width * height) / 2;
+  return rgb;
+}
+
+[[gnu::noinline]] void add_envmap(Alone& alone, int width, int height, const std::vector<float>& rgb,
+                                  const Transform& world_from_map = {}) {
+  alone.lights.add({1, 1, 1}, "map", LightKind::envmap,
+                   alone.lights.envmaps.add({width, height, rgb}, world_from_map));
+}
+
+TEST(Envmap, DirectionsFollowTheDensity) {
+  struct Size {
+    int width, height;
+    bool has_hot_texel;
+  };
+  for (const auto& [width, height, has_hot_texel] :
+       {Size{1, 1, false}, Size{2, 1, false}, Size{1, 3, false}, Size{8, 4, false}, Size{16, 9, false},
+        Size{16, 9, true}, Size{64, 32, true}}) {
+    Alone alone;
+    // Upright in the cells, and then askew.
+    add_envmap(alone, width, height, random_map(width, height, has_hot_texel),
+               width == 8 ? rotation({1, 2, 3}, 77) * scaling({-1, 1, 1}) : rotation({1, 0, 0}, 90));
+    expect_directions_follow_density(
+        alone,
+        "map of " + std::to_string(width) + " x " + std::to_string(height) + (has_hot_texel ? ", hot" : ""),
+        60, 1e-3);
+  }
+}
+
+TEST(Envmap, NoDirectionOfABlackTexelIsSampled) {
+  Alone alone;
+  std::vector<float> rgb(3 * 8 * 6);
+  for (std::size_t k = 0; k < 3; ++k) rgb[3 * (8 * 2 + 5) + k] = 1;
+  add_envmap(alone, 8, 6, rgb);
+  RandomBits random(14);
+  for (int i = 0; i < 10000; ++i) {
+    const LightSample<float> sample = sample_of(alone, random.square());
+    ASSERT_TRUE(sample.is_there);
+    const double u = std::atan2(sample.wi.x, -sample.wi.z) / (2 * std::numbers::pi),
+                 v = std::acos(sample.wi.y) / std::numbers::pi;
+    ASSERT_NEAR(u < 0 ? u + 1 : u, 5.5 / 8, 1.0 / 8 + 1e-5);
+    ASSERT_NEAR(v, 2.5 / 6, 1.0 / 6 + 1e-5);
+  }
+}
+
+/// One texel at a time: its colour must come from where the orientation of Mitsuba 0.x puts it.
+TEST(Envmap, TexelsStandWhereTheConventionSays) {
+  constexpr int width = 12, height = 6;
+  Alone alone;
+  std::vector<float> rgb;
+  for (int i = 0; i < 3 * width * height; ++i) rgb.push_back(float(i + 1));
+  const Transform turn = rotation({1, 0, 0}, 90);  // As in the family's table scene: y up becomes z up.
+  add_envmap(alone, width, height, rgb, turn);
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i) {
+      const double phi = 2 * std::numbers::pi * (i + 0.5) / width,
+                   theta = std::numbers::pi * (j + 0.5) / height;
+      const Vec3d d = transform_vector(
+          turn, {std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta)});
+      const Colorf radiance =
+          alone.lights.infinite_radiance<float>(0, {float(d.x), float(d.y), float(d.z)}, true);
+      const auto at = std::size_t(3 * (j * width + i));
+      EXPECT_NEAR(radiance.r, rgb[at], 1e-3) << i << ", " << j;
+      EXPECT_NEAR(radiance.b, rgb[at + 2], 1e-3) << i << ", " << j;
+    }
+  EXPECT_NEAR((alone.lights.infinite_radiance<float>(0, {0, 0, 1}, true).g), rgb[1 + 3 * (width - 1)], 17)
+      << "the zenith is z, and has the first row";
+}
+
+TEST(Envmap, RadianceOverDensityIsNearlyConstantWhereTheMapIsSmooth) {
+  constexpr int width = 64, height = 32;
+  std::vector<float> rgb;
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i)
+      for (int k = 0; k < 3; ++k)
+        rgb.push_back(float(1.5 + std::sin(0.2 * j) * std::cos(i * std::numbers::pi / 32)));
+  Alone smooth;
+  add_envmap(smooth, width, height, rgb);
+  RandomBits random(15);
+  RunningStatistics ratio;
+  for (int i = 0; i < samples; ++i) ratio.add(sample_of(smooth, random.square()).radiance_over_pdf.g);
+  EXPECT_LT(std::sqrt(ratio.variance()), 0.01 * ratio.mean);
+
+  // Where it is not, the ratio stays below 3 times the mean: sin(theta) against its interpolation.
+  Alone rough;
+  add_envmap(rough, 16, 9, random_map(16, 9, true));
+  RunningStatistics rough_ratio;
+  double largest = 0;
+  for (int i = 0; i < samples; ++i) {
+    const double luminance_over_pdf = luminance(sample_of(rough, random.square()).radiance_over_pdf);
+    rough_ratio.add(luminance_over_pdf);
+    largest = std::max(largest, luminance_over_pdf);
+  }
+  EXPECT_LT(largest, 3 * rough_ratio.mean);
+}
+
+/// Irradiance on a surface facing +z at the origin, from samples of all lights of a scene.
+RunningStatistics sampled_irradiance(const Scene& scene, const Vec3f& at, unsigned seed) {
+  RandomBits random(seed);
+  RunningStatistics irradiance;
+  for (int i = 0; i < samples; ++i) {
+    const LightSample<float> sample = sample_lights<float>(scene, at, random.square(), true);
+    irradiance.add(sample.is_there ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
+  }
+  return irradiance;
+}
+
+LoadedScene scene_with(const std::string& lights, const std::vector<SceneFile>& files = {}) {
+  return load_scene_text(camera_xml({0, 0, 0}, {0, 0, 1}, 30, 4, "independent") + lights +
+                             rectangle_xml({0, 0, -1}, {1, 0, 0}, {0, 1, 0}, ""),
+                         files);
+}
+
+void expect_irradiance(const std::string& lights, const Vec3f& at, double exact,
+                       const std::vector<SceneFile>& files = {}) {
+  const LoadedScene loaded = scene_with(lights, files);
+  const RunningStatistics irradiance = sampled_irradiance(loaded.scene, at, 16);
+  if (irradiance.variance() < 1e-8 * exact * exact) {
+    EXPECT_NEAR(irradiance.mean, exact, 1e-5 * exact) << lights;
+    return;
+  }
+  const MeanTest test = t_test(irradiance, exact);
+  EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
+      << lights << irradiance.mean << ", exact " << exact;
+}
+
+TEST(LightIrradiance, OfLightsWithoutAreaIsExact) {
+  constexpr double pi_d = std::numbers::pi;
+  const double distance = std::sqrt(1.0 + 4 + 9), cosine = 3 / distance;
+  expect_irradiance(R"(<luminaire type="point"><point name="position" value="1,2,3"/>
+    <color name="power" value="5,7,9"/></luminaire>)",
+                    {0, 0, 0}, 7 / (4 * pi_d) / (distance * distance) * cosine);
+  expect_irradiance(R"(<luminaire type="point"><color name="intensity" value="5,7,9"/>
+    <transform name="toWorld"><translate value="1,2,3"/></transform></luminaire>)",
+                    {0, 0, 0}, 7 / (distance * distance) * cosine);
+  expect_irradiance(R"(<luminaire type="directional"><vector name="direction" value="0,-3,-4"/>
+    <color name="irradiance" value="7"/></luminaire>)",
+                    {3, 1, 2}, 7 * 0.8);
+  expect_irradiance(R"(<luminaire type="directional"><color name="radiance" value="7"/>
+    <transform name="toWorld"><lookat origin="0,3,4" target="0,0,0" up="0,0,1"/></transform></luminaire>)",
+                    {3, 1, 2}, 7 * 0.8);
+  // Spots: on the axis; half way between 30 and 50 degrees; outside.
+  const std::string spot = R"(<luminaire type="spot"><color name="intensity" value="8"/>
+    <float name="cutoffAngle" value="50"/><float name="beamWidth" value="30"/>
+    <transform name="toWorld"><lookat origin="0,0,2" target="0,0,0" up="0,1,0"/></transform></luminaire>)";
+  expect_irradiance(spot, {0, 0, 0}, 8 / 4.0);
+  const double t = std::tan(40 * pi_d / 180), slant_sq = 4 * (1 + t * t);
+  expect_irradiance(spot, {0, float(2 * t), 0}, 0.5 * 8 / slant_sq * 2 / std::sqrt(slant_sq));
+  const LoadedScene outside = scene_with(spot);
+  EXPECT_EQ(sampled_irradiance(outside.scene, {3, 0, 0}, 17).mean, 0);
+  EXPECT_EQ(sampled_irradiance(outside.scene, {0, 0, 3}, 17).mean, 0);
+}
+
+TEST(LightIrradiance, OfLightsAtInfinityIsExact) {
+  constexpr double pi_d = std::numbers::pi;
+  expect_irradiance(R"(<luminaire type="constant"><color name="radiance" value="2"/></luminaire>)", {0, 0, 0},
+                    2 * pi_d);
+  for (const double half_angle : {5.0, 60.0, 90.0}) {
+    const double sine = std::sin(half_angle / 180 * pi_d);
+    expect_irradiance(fmt::format(R"(<luminaire type="distantdisk"><color name="radiance" value="2"/>
+      <float name="thetaA" value="{}"/></luminaire>)",
+                                  half_angle),
+                      {0, 0, 0}, 2 * pi_d * sine * sine);
+  }
+  // All directions; half of the upper ones; and from below, nothing.
+  expect_irradiance(R"(<luminaire type="distantdisk"><color name="radiance" value="2"/>
+    <float name="thetaA" value="180"/></luminaire>)",
+                    {0, 0, 0}, 2 * pi_d);
+  expect_irradiance(R"(<luminaire type="distantdisk"><color name="radiance" value="2"/>
+    <float name="thetaA" value="90"/><transform name="toWorld"><rotate axis="1,0,0" angle="90"/></transform>
+    </luminaire>)",
+                    {0, 0, 0}, pi_d);
+}
+
+/// The bytes of an EXR image, as a file beside a scene.
+SceneFile exr_file(const std::string& name, int width, int height, const std::vector<float>& rgb) {
+  Image image{width, height, {{"R", {}}, {"G", {}}, {"B", {}}}, {}};
+  for (std::size_t i = 0; i < rgb.size(); ++i) image.channels[i % 3].values.push_back(rgb[i]);
+  const TemporaryFolder folder;
+  write_exr(folder.path() / name, image);
+  std::ifstream stream(folder.path() / name, std::ios::binary);
+  return {name, {std::istreambuf_iterator<char>(stream), {}}};
+}
+
+TEST(LightIrradiance, OfAnEnvironmentMapIsThatOfItsTexels) {
+  constexpr int width = 16, height = 9;
+  const std::vector<float> rgb = random_map(width, height, true);
+  const auto texel = [&](int i, int j) {
+    return double(rgb[std::size_t(3 * (std::clamp(j, 0, height - 1) * width + (i + width) % width) + 1)]);
+  };
+  // Quadrature of the bilinear map, by the midpoint rule; z is up after a turn about x.
+  constexpr int steps = 60;
+  double exact = 0;
+  for (int j = 0; j < height * steps; ++j)
+    for (int i = 0; i < width * steps; ++i) {
+      const double u = (i + 0.5) / (width * steps), v = (j + 0.5) / (height * steps);
+      const double x = u * width - 0.5, y = v * height - 0.5;
+      const int i0 = int(std::floor(x)), j0 = int(std::floor(y));
+      const double s = x - i0, t = y - j0, theta = v * std::numbers::pi;
+      const double radiance = (1 - t) * ((1 - s) * texel(i0, j0) + s * texel(i0 + 1, j0)) +
+                              t * ((1 - s) * texel(i0, j0 + 1) + s * texel(i0 + 1, j0 + 1));
+      exact += radiance * std::max(0.0, std::cos(theta)) * std::sin(theta) * 2 *
+               std::pow(std::numbers::pi / (height * steps), 2) * (double(height) / width);
+    }
+  expect_irradiance(R"(<luminaire type="envmap"><string name="filename" value="map.exr"/>
+    <float name="scale" value="3"/><transform name="toWorld"><rotate axis="1,0,0" angle="90"/></transform>
+    </luminaire>)",
+                    {0, 0, 0}, 3 * exact, {exr_file("map.exr", width, height, rgb)});
+}
+
+TEST(LightIrradiance, OfSeveralKindsTogetherAddsUp) {
+  expect_irradiance(R"(<luminaire type="constant"><color name="radiance" value="2"/></luminaire>
+    <luminaire type="directional"><vector name="direction" value="0,-3,-4"/></luminaire>)" +
+                        rectangle_xml({0, 0, 2}, {0.5, 0, 0}, {0, -0.5, 0}, light_xml(3)) +
+                        sphere_xml({1, 0, 3}, 0.2, R"(<luminaire type="point">
+                          <point name="position" value="0,0,4"/><color name="intensity" value="16"/></luminaire>)"),
+                    {0, 0, 0},
+                    2 * std::numbers::pi + 0.8 + 1 +
+                        polygon_irradiance(rectangle_corners({0, 0, 2}, {0.5, 0, 0}, {0, -0.5, 0}), 3,
+                                           {0, 0, 0}, {0, 0, 1}));
+}
+
+TEST(SpotLight, SendsOutItsPower) {
+  for (const double cutoff_deg : {20.0, 50.0, 180.0})
+    for (const double beam_deg : {0.0, 0.5 * cutoff_deg, cutoff_deg}) {
+      const LoadedScene loaded = scene_with(fmt::format(
+          R"(<luminaire type="spot"><color name="power" value="12"/><float name="cutoffAngle" value="{}"/>
+          <float name="beamWidth" value="{}"/></luminaire>)",
+          cutoff_deg, beam_deg));
+      // On a sphere of radius 2 about it, in rings: radiance over density is the irradiance that faces it.
+      constexpr int rings = 20000;
+      double power = 0;
+      for (int i = 0; i < rings; ++i) {
+        const double angle = (i + 0.5) / rings * std::numbers::pi;
+        const LightSample<float> sample =
+            sample_lights<float>(loaded.scene, {float(2 * std::sin(angle)), 0, float(2 * std::cos(angle))},
+                                 {1u << 31, 1u << 31}, true);
+        if (!sample.is_there) continue;
+        EXPECT_EQ(sample.pdf_solid_angle(), std::numeric_limits<float>::infinity());
+        power += sample.radiance_over_pdf.g * 4 * 2 * std::numbers::pi * std::sin(angle) * std::numbers::pi /
+                 rings;
+      }
+      EXPECT_NEAR(power, 12, 12 * 1e-3) << cutoff_deg << ", " << beam_deg;
+    }
+}
+
+TEST(LightSample, EndsOnTheLightOrBeyondTheScene) {
+  const LoadedScene loaded = scene_with(R"(<luminaire type="constant"/><luminaire type="directional"/>
+    <luminaire type="point"><point name="position" value="3,4,5"/></luminaire>)");
+  const Sphere bounds = bounding_sphere(loaded.scene.geometry);
+  RandomBits random(18);
+  for (const Vec3f& at : {Vec3f{0, 0, 0}, Vec3f{0.5f, 0.5f, -1}, Vec3f{-40, 0, 3}, Vec3f{1e4f, 1, 1}})
+    for (int i = 0; i < 1000; ++i) {
+      const LightSample<float> sample = sample_lights<float>(loaded.scene, at, random.square(), true);
+      ASSERT_TRUE(sample.is_there);
+      if (sample.light == 2) {
+        ASSERT_EQ(sample.end, (Vec3f{3, 4, 5}));
+      } else {
+        // Without its last 1 / 10000, too.
+        const Vec3d last = wide(at) + (wide(sample.end) - wide(at)) * (1 - 1e-4);
+        const double along = dot(wide(bounds.center) - wide(at), wide(sample.wi));
+        ASSERT_GE(length(last - wide(at)), along + double(bounds.radius));
+        ASSERT_GT(length(last - wide(bounds.center)), 0.999 * double(bounds.radius));
+      }
+    }
+}
+
+TEST(LightSample, OfAGivenLightHasNoProbabilityInIt) {
+  const LoadedScene loaded =
+      scene_with(R"(<luminaire type="constant"><color name="radiance" value="2"/></luminaire>
+    <luminaire type="constant"><color name="radiance" value="5"/></luminaire>)");
+  for (const std::int32_t light : {0, 1}) {
+    const LightChoice<float> choice{light, 12345u << 16, 1.0f};
+    const LightSample<float> sample =
+        sample_chosen_light<float>(loaded.scene, choice, {0, 0, 0}, 99u << 20, true);
+    EXPECT_EQ(sample.light, light);
+    EXPECT_NEAR(sample.pdf_solid_angle() * 4 * std::numbers::pi, 1, 1e-6);
+    EXPECT_NEAR(sample.radiance_over_pdf.g / (4 * std::numbers::pi), light == 0 ? 2 : 5, 1e-5);
+    EXPECT_NEAR(
+        (environment_pdf_solid_angle<float>(loaded.scene, light, sample.wi, true)) * 8 * std::numbers::pi, 1,
+        1e-6);
+  }
+}
+
+TEST(InversionTable, ChoosesByShareAndKeepsTheOrder) {
+  std::mt19937 engine(19);
+  std::uniform_real_distribution<double> uniform;
+  for (const std::size_t count : {1, 2, 3, 7, 64, 1000}) {
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < count; ++i)
+      weights.push_back(i % 5 == 3 ? 0 : std::pow(10, -3 * uniform(engine)));
+    std::vector<std::int32_t> shares;
+    append_cumulative_shares(weights, shares);
+    ASSERT_EQ(shares.size(), count + 1);
+    EXPECT_EQ(shares.back(), inversion_whole);
+    const std::int32_t n = std::int32_t(count);
+    std::vector<double> observed(count), expected;
+    RandomBits random(20);
+    for (int i = 0; i < samples; ++i) {
+      const auto chosen = sample_by_inversion<float>(shares.data(), 0, n, random.square().x);
+      ASSERT_TRUE(chosen.index >= 0 && chosen.index < n);
+      ASSERT_TRUE(chosen.u_left >= 0 && chosen.u_left < 1);
+      ++observed[std::size_t(chosen.index)];
+    }
+    double total = 0;
+    for (std::int32_t i = 0; i < n; ++i) {
+      expected.push_back(samples * double(inversion_pmf<float>(shares.data(), 0, i)));
+      total += expected.back();
+    }
+    EXPECT_NEAR(total / samples, 1, 1e-5);
+    if (count > 1) expect_counts(observed, expected, std::to_string(count) + " entries");
+    for (const std::uint32_t u : {0u, ~0u})
+      EXPECT_GT(
+          (inversion_pmf<float>(shares.data(), 0, sample_by_inversion<float>(shares.data(), 0, n, u).index)),
+          0);
+  }
+}
+
 TEST(LightSampler, ChoosesEachLightWithItsProbability) {
   RandomBits random(9);
   for (const std::int32_t lights : {1, 3, 16, 1000}) {
@@ -237,16 +645,15 @@ TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
   RunningStatistics irradiance;
   for (int i = 0; i < samples; ++i) {
     const LightSample<float> sample = sample_lights<float>(scene, {0, 0, 0}, random.square(), true);
-    irradiance.add(sample.is_facing ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
-    if (!sample.is_facing) continue;
+    irradiance.add(sample.is_there ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
+    if (!sample.is_there) continue;
     const std::int32_t light = sample.light;
-    const Vec3f ng = light == 1   ? Vec3f(normalize(sample.position - Vec3f{1, 2, 1}))
+    const Vec3f ng = light == 1   ? Vec3f(normalize(sample.end - Vec3f{1, 2, 1}))
                      : light == 0 ? Vec3f{float(normalize(cross(half_u, half_v)).x),
                                           float(normalize(cross(half_u, half_v)).y),
                                           float(normalize(cross(half_u, half_v)).z)}
                                   : Vec3f{1, 0, 0};
-    const float pdf =
-        light_pdf_solid_angle<float>(scene, light, {0, 0, 0}, sample.position, ng, sample.wi, true);
+    const float pdf = light_pdf_solid_angle<float>(scene, light, {0, 0, 0}, sample.end, ng, sample.wi, true);
     ASSERT_NEAR(sample.pdf_solid_angle() / pdf, 1, 2e-4) << "light " << light;
   }
   const MeanTest test = t_test(irradiance, exact);

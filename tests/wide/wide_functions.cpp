@@ -170,9 +170,9 @@ void lights_sample(const Scene& scene, Packet& p) {
   const Vec3<F> reference = p.vec();
   const LightSample<F> sample = sample_lights<F>(scene, reference, p.words(), every_lane());
   const Vec3<F> none{F(0), F(0), F(0)};
-  p.give(select(sample.is_facing, sample.wi, none));
-  p.give(select(sample.is_facing, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
-  p.give(select(sample.is_facing, sample.pdf_solid_angle(), F(0)));
+  p.give(select(sample.is_there, sample.wi, none));
+  p.give(select(sample.is_there, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
+  p.give(select(sample.is_there, sample.pdf_solid_angle(), F(0)));
 }
 
 template <Combination combination>

@@ -1,0 +1,74 @@
+// Distant disks: constant radiance from a cone of directions at infinity, up to all of them.
+#pragma once
+
+#include "base/color.h"
+#include "base/frame.h"
+#include "base/lookup_table.h"
+#include "base/warp.h"
+#include "light/light_sample.h"
+#include "scenefile/parameters.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace etendue {
+
+struct DistantDisk {
+  Vec3f axis;        ///< Unit, world: towards the middle of the disk.
+  float half_angle;  ///< From the axis to the rim, radians, 0 < half_angle <= pi.
+  Colorf radiance;   ///< W/(m^2 sr)
+};
+
+/// Strength: radiance, W/(m^2 sr). Directions are uniform in the cone.
+class DistantDiskLights {
+ public:
+  std::int32_t add(const DistantDisk& disk);
+
+  template <class F>
+  LightSample<F> sample(const Sphere& scene_bounds, const Int<F>& row, const Vec3<F>& reference,
+                        const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+    const Int<F> at = row * Int<F>(3);
+    const Vec3<F> axis{gather(axes_.data(), at), gather(axes_.data() + 1, at), gather(axes_.data() + 2, at)};
+    const F one_minus_cos_max = one_minus_cos_max_.at(row);
+    const Vec2<F> u_cone{to_unit_float(u.x), to_unit_float(u.y)};
+    const Vec3<F> wi = Frame<F>(axis).world_from_local(square_to_uniform_cone(u_cone, one_minus_cos_max));
+    const F pdf = uniform_cone_pdf_solid_angle(one_minus_cos_max), arriving = F(1) / pdf;
+    const Int<F> piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));
+    return light_sample_towards<F>(wi, beyond_scene(scene_bounds, reference, wi),
+                                   {arriving, arriving, arriving}, pdf, m, piece);
+  }
+
+  /// Per unit of strength: 1 within the disk, else 0.
+  template <class F>
+  Color<F> radiance(std::int32_t row, const Vec3<F>& direction) const {
+    const F one = select(is_within<F>(row, direction), F(1), F(0));
+    return {one, one, one};
+  }
+
+  /// The density (1/sr) with which `sample` gives `direction`.
+  template <class F>
+  F pdf_solid_angle(std::int32_t row, const Vec3<F>& direction) const {
+    return select(is_within<F>(row, direction), uniform_cone_pdf_solid_angle(F(one_minus_cos_max_[row])),
+                  F(0));
+  }
+
+ private:
+  template <class F>
+  Mask<F> is_within(std::int32_t row, const Vec3<F>& direction) const {
+    const float* axis = axes_.data() + 3 * row;
+    // 1 - cos without cancellation: the sun is a disk of 0.27 degrees.
+    const Vec3<F> chord = direction - Vec3<F>{F(axis[0]), F(axis[1]), F(axis[2])};
+    return length_sq(chord) * F(0.5f) <= F(rim_[std::size_t(row)]);
+  }
+
+  std::vector<float> axes_;
+  LookupTable<float> one_minus_cos_max_;  ///< At the rim.
+  std::vector<float> rim_;                ///< The same, but no direction is beyond the rim of a full sphere.
+};
+
+extern const Plugin distant_disk_plugin, constant_plugin;
+DistantDisk make_distant_disk(const Object& description, std::vector<UnreadKey>& unread);
+/// The disk of half angle pi.
+DistantDisk make_constant_environment(const Object& description, std::vector<UnreadKey>& unread);
+
+}  // namespace etendue

@@ -1,0 +1,18 @@
+#include "light/inversion_table.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace etendue {
+
+void append_cumulative_shares(std::span<const double> weights, std::vector<std::int32_t>& shares) {
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  double sum = 0;
+  shares.push_back(0);
+  for (const double weight : weights) {
+    sum += weight;
+    shares.push_back(total > 0 ? std::int32_t(std::round(sum / total * inversion_whole)) : 0);
+  }
+}
+
+}  // namespace etendue
