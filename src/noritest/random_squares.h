@@ -10,9 +10,11 @@ class RandomSquares {
  public:
   explicit RandomSquares(std::uint64_t seed) : stream_(hash64(seed)) {}
 
-  Vec2f operator[](std::uint32_t index) const {
-    return to_unit_floats<float>(sample_2d<float>(SamplerKind::independent, std::uint32_t(stream_),
-                                                  std::uint32_t(stream_ >> 32), index, dimension::bsdf));
+  Vec2f operator[](std::uint32_t index) const { return to_unit_floats<float>(bits(index)); }
+  /// The same point as 32-bit fractions.
+  Vec2<std::uint32_t> bits(std::uint32_t index) const {
+    return sample_2d<float>(SamplerKind::independent, std::uint32_t(stream_), std::uint32_t(stream_ >> 32),
+                            index, dimension::bsdf);
   }
 
  private:

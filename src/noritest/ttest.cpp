@@ -1,4 +1,4 @@
-// Student's t-test of "the mean is the reference", for scenes and for BSDFs.
+// Student's t-test of "the mean is the reference", for scenes, BSDFs and emitters.
 //
 // The rules are those of Nori's ttest (W. Jakob): the number of samples, the level of the whole file and its
 // Sidak correction, and a least variance. Two are stricter here: samples that are all 0 never pass for
@@ -7,8 +7,8 @@
 #include "noritest/case_runner.h"
 #include "noritest/random_squares.h"
 #include "noritest/scene_luminance.h"
+#include "scene/load_light.h"
 #include "scene/load_scene.h"
-#include "scene/load_shape.h"
 #include "scenefile/value_text.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
@@ -24,12 +24,13 @@ using Type = Parameter::Type;
 const Plugin ttest_plugin{
     "test",
     "ttest",
-    "Student's t-tests of the mean luminance of scenes, or of BSDFs under uniform light.",
+    "Student's t-tests of the mean luminance of scenes, of BSDFs under uniform light, or from emitters.",
     {{"references", Type::text, "", "", "The expected means, one for each case", true},
      {"angles", Type::text, "", "deg", "Of BSDFs: between the normal and the direction to the viewer"},
+     {"distances", Type::text, "", "m", "Of emitters: places of the receiver on the z axis"},
      {"significanceLevel", Type::real, "0.01", "", "Of all cases of the file together"},
      {"sampleCount", Type::integer, "100000", "", "Samples a case; at least 2"}},
-    {"scene", "bsdf", "brdf"}};
+    {"scene", "bsdf", "brdf", "emitter", "luminaire"}};
 
 namespace {
 
@@ -88,6 +89,19 @@ void test_scene(TestRun& run, const Object& scene, double reference, std::uint64
   });
 }
 
+/// Luminances of single samples; what is not finite or negative is counted, and is 0.
+struct Samples {
+  RunningStatistics luminances;
+  std::int64_t invalid = 0;
+
+  void add(const Colorf& sample) {
+    const auto is_valid = [](float channel) { return std::isfinite(channel) && channel >= 0; };
+    const bool valid = is_valid(sample.r) && is_valid(sample.g) && is_valid(sample.b);
+    invalid += !valid;
+    luminances.add(valid ? luminance(sample) : 0);
+  }
+};
+
 /// The luminance that a BSDF sends to the viewer under uniform light of radiance 1: the mean weight of its
 /// samples.
 void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double reference, std::uint64_t seed,
@@ -105,24 +119,15 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
     const double angle = angle_deg * std::numbers::pi / 180;
     const Vec3f wo{float(std::sin(angle)), 0, float(std::cos(angle))};
     const RandomSquares u_bsdf(seed);
-    RunningStatistics weights;
-    std::int64_t invalid = 0;
-    const auto is_valid = [](float channel) { return std::isfinite(channel) && channel >= 0; };
+    Samples samples;
     std::visit(
         [&](const auto& model) {
           const auto at_point = model.at(Vec2f{0, 0}, true);
-          for (std::int64_t i = 0; i < rules.sample_count; ++i) {
-            const Colorf weight = at_point.sample_(wo, u_bsdf[std::uint32_t(i)]).weight;
-            if (is_valid(weight.r) && is_valid(weight.g) && is_valid(weight.b)) {
-              weights.add(luminance(weight));
-            } else {
-              weights.add(0);
-              ++invalid;
-            }
-          }
+          for (std::int64_t i = 0; i < rules.sample_count; ++i)
+            samples.add(at_point.sample_(wo, u_bsdf[std::uint32_t(i)]).weight);
         },
         material);
-    judge(measured, weights, invalid, rules);
+    judge(measured, samples.luminances, samples.invalid, rules);
   });
 }
 
@@ -157,6 +162,49 @@ void test_bsdfs(TestRun& run, const Parameters& parameters, const std::vector<co
     }
 }
 
+/// The luminance that arrives at (0, 0, distance) from an emitter that stands alone.
+void test_emitter(TestRun& run, const Object& emitter, double distance, double reference, std::uint64_t seed,
+                  const TTestRules& rules) {
+  CaseResult result{.kind = "ttest",
+                    .subject = "emitter",
+                    .type = emitter.type,
+                    .detail = fmt::format("at {} m", distance),
+                    .reference = reference};
+  run.run_case(result, [&](CaseResult& measured) {
+    if (emitter.type == area_light_name)
+      throw InputError(emitter.location, "an area light is a shape: without one it cannot be tested",
+                       "put it into a <mesh> of a <scene>");
+    std::vector<UnreadKey> unread;
+    Lights lights;
+    add_light(emitter, run.test.directory, lights, unread);
+    run.warn(unread);
+    const Geometry empty;
+    const RandomSquares u_light(seed);
+    const Vec3f receiver{0, 0, float(distance)};
+    Samples samples;
+    for (std::int64_t i = 0; i < rules.sample_count; ++i) {
+      const LightSample<float> sample =
+          lights.sample<float>(empty, 0, 1, receiver, u_light.bits(std::uint32_t(i)), true);
+      samples.add(sample.is_there ? sample.radiance_over_pdf : Colorf{0, 0, 0});
+    }
+    judge(measured, samples.luminances, samples.invalid, rules);
+  });
+}
+
+void test_emitters(TestRun& run, const Parameters& parameters, const std::vector<const Object*>& emitters,
+                   const std::vector<double>& references, const TTestRules& rules) {
+  const std::vector<double> distances = numbers(parameters, "distances");
+  if (references.size() != emitters.size() * distances.size())
+    throw InputError(
+        parameters.location("references"),
+        fmt::format("{} references for {} distances and {} emitters; there must be one for each of "
+                    "each",
+                    references.size(), distances.size(), emitters.size()));
+  for (std::size_t i = 0; i < references.size(); ++i)
+    test_emitter(run, *emitters[i / distances.size()], distances[i % distances.size()], references[i],
+                 hash64(hash64(run.settings.seed) + i), rules);
+}
+
 void test_scenes(TestRun& run, const Parameters& parameters, const std::vector<const Object*>& scenes,
                  const std::vector<double>& references, const TTestRules& rules) {
   if (references.size() != scenes.size())
@@ -180,17 +228,20 @@ void run_ttest(TestRun& run) {
   if (rules.sample_count < 2)
     throw InputError(parameters.location("sampleCount"),
                      fmt::format("'sampleCount' is {}; it must be at least 2", rules.sample_count));
-  std::vector<const Object*> scenes, bsdfs;
+  std::vector<const Object*> scenes, bsdfs, emitters;
   for (const Object& child : run.test.root.children)
-    (child.family == "scene" ? scenes : bsdfs).push_back(&child);
-  if (scenes.empty() == bsdfs.empty())
+    (child.family == "scene" ? scenes : is_light(child) ? emitters : bsdfs).push_back(&child);
+  if (int(scenes.empty()) + int(bsdfs.empty()) + int(emitters.empty()) != 2)
     throw InputError(run.test.root.location,
-                     scenes.empty() ? "this test has nothing to test" : "this test has scenes and BSDFs",
-                     "put either <scene> or <bsdf> elements into a ttest");
-  if (scenes.empty())
+                     run.test.root.children.empty() ? "this test has nothing to test"
+                                                    : "this test has subjects of several kinds",
+                     "put either <scene> or <bsdf> or <emitter> elements into a ttest");
+  if (!scenes.empty())
+    test_scenes(run, parameters, scenes, references, rules);
+  else if (!bsdfs.empty())
     test_bsdfs(run, parameters, bsdfs, references, rules);
   else
-    test_scenes(run, parameters, scenes, references, rules);
+    test_emitters(run, parameters, emitters, references, rules);
 }
 
 }  // namespace etendue

@@ -99,10 +99,34 @@ TEST_F(NoriTest, TheForksWaysToCountReferences) {
   EXPECT_EQ(own[3].detail, "at 70 degrees");
 }
 
+TEST_F(NoriTest, EmittersAtDistances) {
+  const std::string point = "<emitter type='point'><color name='power' value='1'/></emitter>",
+                    aside =
+                        "<emitter type='point'><color name='power' value='100'/><point name='position' "
+                        "value='3 0 0'/></emitter>",
+                    distances = "<string name='distances' value='0.1 4'/>";
+  // Intensity / distance^2: to the origin, and to (3, 0, 0).
+  const double intensity = 1 / (4 * std::numbers::pi);
+  const double expected[]{intensity / 0.01, intensity / 16, 100 * intensity / 9.01, 100 * intensity / 25};
+  std::string references;
+  for (const double value : expected) references += std::to_string(value) + " ";
+  const std::vector<CaseResult> results = run(ttest(references, distances + point + aside));
+  ASSERT_EQ(results.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(results[i].is_passed) << i;
+    EXPECT_NEAR(results[i].mean / expected[i], 1, 1e-5);
+    EXPECT_EQ(results[i].subject, "emitter");
+  }
+  EXPECT_EQ(results[3].detail, "at 4 m");
+  EXPECT_FALSE(run(ttest("8.03", "<string name='distances' value='0.1'/>" + point))[0].is_passed);
+  EXPECT_THAT(error(ttest("1", distances + point)), HasSubstr("1 references for 2 distances and 1 emitters"));
+  EXPECT_TRUE(run(ttest("1 1", distances + "<emitter type='area'/>"))[0].is_error);
+}
+
 TEST_F(NoriTest, RefusesTestsThatMakeNoSense) {
   EXPECT_THAT(error(ttest("1 2", angles + grey)), HasSubstr("2 references for 3 angles and 1 BSDFs"));
   EXPECT_THAT(error(ttest("1 2", "<scene/>")), HasSubstr("2 references for 1 scenes"));
-  EXPECT_THAT(error(ttest("1", "<scene/>" + grey)), HasSubstr("scenes and BSDFs"));
+  EXPECT_THAT(error(ttest("1", "<scene/>" + grey)), HasSubstr("several kinds"));
   EXPECT_THAT(error(ttest("1", "")), HasSubstr("nothing to test"));
   EXPECT_THAT(error("<test type='ttest'/>"), HasSubstr("lacks 'references'"));
   EXPECT_THAT(error(ttest("1", "<integer name='sampleCount' value='1'/>" + grey)), HasSubstr("at least 2"));
