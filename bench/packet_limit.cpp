@@ -211,8 +211,8 @@ int main(int argc, char** argv) try {
     fmt::print(text, "\n{}; one thread\n", name);
     for (const Isa isa : isas)
       for (const int samples_per_pixel : sample_counts) {
-        const Measurement m =
-            measure(scene, integrator, isa, samples_per_pixel, isa == Isa::scalar ? most_samples / 4 : most_samples);
+        const Measurement m = measure(scene, integrator, isa, samples_per_pixel,
+                                      isa == Isa::scalar ? most_samples / 4 : most_samples);
         const double fraction = m.bare_seconds() / m.render_seconds;
         fmt::print(
             text,
@@ -221,10 +221,12 @@ int main(int argc, char** argv) try {
             1e-6 * m.samples / m.bare_seconds(), fraction);
         if (m.bounce_rays > 0)
           fmt::print(text,
-                     "         lane_occupancy {:.3f}; bare rays: camera {:.0f} %, bounces {:.0f} % ({:.2f} M rays/s), "
+                     "         lane_occupancy {:.3f}; bare rays: camera {:.0f} %, bounces {:.0f} % ({:.2f} M "
+                     "rays/s), "
                      "shadow {:.0f} %\n",
                      m.lane_occupancy, 100 * m.camera_seconds / m.bare_seconds(),
-                     100 * m.bounce_seconds / m.bare_seconds(), 1e-6 * double(m.bounce_rays) / m.bounce_seconds,
+                     100 * m.bounce_seconds / m.bare_seconds(),
+                     1e-6 * double(m.bounce_rays) / m.bounce_seconds,
                      100 * m.shadow_seconds / m.bare_seconds());
         nlohmann::ordered_json stages;
         fmt::print(text, "        ");

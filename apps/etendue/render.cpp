@@ -78,7 +78,8 @@ IntegratorSettings integrator_for(const Options& options, const LoadedScene& loa
   const std::string& in_file = loaded.integrator.type;
   if (!options.integrator.empty() && options.integrator != in_file)
     return integrator_from_name(options.integrator);
-  return loaded.integrator.family.empty() ? IntegratorSettings{} : make_integrator(loaded.integrator, dialect, unread);
+  return loaded.integrator.family.empty() ? IntegratorSettings{}
+                                          : make_integrator(loaded.integrator, dialect, unread);
 }
 
 Image to_image(const Film& film) {
@@ -231,8 +232,7 @@ int run(const Options& options) {
     fmt::print(stderr, "{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n",
                options.scene_file, dialect_name(description.dialect), description.dialect_reason,
                loaded.scene.camera.width_px, loaded.scene.camera.height_px, settings.samples_per_pixel,
-               settings.replicates, settings.integrator.name, threads,
-               isa_name(settings.isa));
+               settings.replicates, settings.integrator.name, threads, isa_name(settings.isa));
 
   std::signal(SIGINT, handle_interrupt);
   const RenderResult result = [&] {

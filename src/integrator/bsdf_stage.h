@@ -50,9 +50,8 @@ template <class F>
     Color<F> throughput = load_lanes<F>(path.throughput, i) * sample.weight;
     if (rules.bsdf_samples > 1) throughput = throughput * F(1 / float(rules.bsdf_samples));
     const F eta = load_lanes<F>(&path.eta[i]) * sample.eta;
-    Mask<F> goes_on = mask_and(
-        vertex.is_there, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
-        mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
+    Mask<F> goes_on = mask_and(vertex.is_there, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
+                               mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
     if (rules.is_dirac_only) goes_on = mask_and(goes_on, is_dirac);
     if (vertex_number >= first_roulette_vertex) {
       const Mask<F> is_number =

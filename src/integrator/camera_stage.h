@@ -69,8 +69,7 @@ template <class F>
 void weigh_by_filter(const Scene& scene, SampleBlock& block) {
   if (!scene.filter.is_signed()) return;
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>)
-    store_lanes(block.radiance, i,
-                load_lanes<F>(block.radiance, i) * load_lanes<F>(&block.filter_weight[i]));
+    store_lanes(block.radiance, i, load_lanes<F>(block.radiance, i) * load_lanes<F>(&block.filter_weight[i]));
 }
 
 }  // namespace etendue

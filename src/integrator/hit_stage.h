@@ -74,8 +74,7 @@ template <class F>
     const Mask<F> is_front = mask_and(is_light, dot(ng, direction) < F(0));
     if (!any(is_front)) continue;
     const F weight = met_light_weight<F>(rules, path, i, is_front, [&] {
-      const Vec3<F> hit =
-          load_lanes<F>(path.ray.origin, i) + direction * load_lanes<F>(&path.hit.t[i]);
+      const Vec3<F> hit = load_lanes<F>(path.ray.origin, i) + direction * load_lanes<F>(&path.hit.t[i]);
       return light_pdf_solid_angle<F>(scene, light, load_lanes<F>(path.from, i), hit, ng, direction,
                                       is_front);
     });

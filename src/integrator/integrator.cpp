@@ -75,7 +75,8 @@ const Parameter heuristic_parameter{"heuristic", Type::text, "balance", "", "bal
 const Plugin sampling_direct_plugin{
     "integrator",
     "direct",
-    "BRDF sampling: each sample takes one direction from the BSDF. In the dialect nori, by the method and with "
+    "BRDF sampling: each sample takes one direction from the BSDF. In the dialect nori, by the method and "
+    "with "
     "the numbers of samples that its keys say; in nori-eth, every_light.",
     {{"samplingMethod", Type::text, "brdf", "", "brdf, emitter or mis"},
      {"emitterSamples", Type::integer, "1", "", "Light samples for each camera ray"},
@@ -111,13 +112,15 @@ IntegratorSettings make_sampling_direct(const Object& description, std::vector<U
     made.rules.light_samples = direct_light == DirectLight::bsdf ? 0 : light_samples;
     made.rules.bsdf_samples = direct_light == DirectLight::lights ? 0 : bsdf_samples;
     if (made.rules.light_samples + made.rules.bsdf_samples == 0)
-      throw InputError(parameters.location(direct_light == DirectLight::bsdf ? "brdfSamples" : "emitterSamples"),
-                       fmt::format("samplingMethod '{}' with 0 samples: the image would be black", method));
+      throw InputError(
+          parameters.location(direct_light == DirectLight::bsdf ? "brdfSamples" : "emitterSamples"),
+          fmt::format("samplingMethod '{}' with 0 samples: the image would be black", method));
     return made;
   };
   if (method == "emitter" || (method == "mis" && bsdf_samples == 0))
     return settings("light", DirectLight::lights);
-  if (method == "brdf" || (method == "mis" && light_samples == 0)) return settings("direct", DirectLight::bsdf);
+  if (method == "brdf" || (method == "mis" && light_samples == 0))
+    return settings("direct", DirectLight::bsdf);
   if (method == "mis") return settings("mis", heuristic);
   throw InputError(parameters.location("samplingMethod"), "unknown samplingMethod '" + method + "'",
                    known_names(method, {"brdf", "emitter", "mis"}));

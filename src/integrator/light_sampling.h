@@ -12,7 +12,7 @@ namespace etendue {
 template <class F>
 LightSample<F> sample_chosen_light(const Scene& scene, const LightChoice<F>& choice, const Vec3<F>& reference,
                                    const UInt<F>& u_y, const Mask<F>& m) {
-  return scene.lights.sample<F>(scene.geometry, choice.light, choice.pmf, reference, {choice.u_left, u_y}, m);
+  return scene.lights.sample<F>(choice.light, choice.pmf, reference, {choice.u_left, u_y}, m);
 }
 
 /// Uniform choice of a light, then a sample of it. \param u_light one 2-D sample, which chooses the light and

@@ -21,8 +21,8 @@ LightSample<F> sample_lights(const Scene& scene, const PathRules& rules, const P
   const std::uint32_t pair = dimension::at_vertex(dimension::light, vertex_number);
   if (rules.is_every_light) {
     const Vec2<UInt<F>> u_light = sample_bits<F>(scene, path, i, pair, number, scene.lights.count());
-    return sample_chosen_light<F>(scene, {.light = Int<F>(number), .u_left = u_light.x, .pmf = F(1)}, vertex.position, u_light.y,
-                                  vertex.is_there);
+    return sample_chosen_light<F>(scene, {.light = Int<F>(number), .u_left = u_light.x, .pmf = F(1)},
+                                  vertex.position, u_light.y, vertex.is_there);
   }
   const Vec2<UInt<F>> u_light = sample_bits<F>(scene, path, i, pair, number, rules.light_samples);
   return sample_lights<F>(scene, vertex.position, u_light, vertex.is_there);
@@ -44,8 +44,7 @@ template <class F>
 
     const Frame<F> frame(vertex.ns);
     const Vec3<F> wo_local = frame.local_from_world(vertex.wo), wi_local = frame.local_from_world(sample.wi);
-    const Mask<F> is_lit =
-        mask_and(sample.is_there, vertex.is_consistent(wo_local.z, wi_local.z, sample.wi));
+    const Mask<F> is_lit = mask_and(sample.is_there, vertex.is_consistent(wo_local.z, wi_local.z, sample.wi));
     const F cosine = vertex.foreshortening(wi_local.z);
     Color<F> scattered = black<F>();
     for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
@@ -55,8 +54,8 @@ template <class F>
                             bsdf.pdf_solid_angle_(wo_local, wi_local) * n_bsdf);
       else if (rules.direct_light == DirectLight::half)
         weight = mis_weight(rules.direct_light, sample.pdf_solid_angle(), F(0));
-      scattered = select(
-          lanes, bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (cosine * weight), scattered);
+      scattered = select(lanes, bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (cosine * weight),
+                         scattered);
     });
     if (rules.light_samples > 1) scattered = scattered * F(1 / float(rules.light_samples));
     const Vec3<F> origin = vertex.offset_origin(sample.wi);

@@ -18,9 +18,9 @@ struct PathRules {
   static constexpr int unlimited = std::numeric_limits<int>::max();
 
   DirectLight direct_light = DirectLight::lights;
-  int most_vertices = 1;  ///< Vertices that scatter light; 1: direct light only.
-  bool is_dirac_only = false;       ///< Paths go on only from mirrors and smooth dielectrics.
-  bool is_every_light = false;      ///< A sample of each light, instead of one light chosen at random.
+  int most_vertices = 1;        ///< Vertices that scatter light; 1: direct light only.
+  bool is_dirac_only = false;   ///< Paths go on only from mirrors and smooth dielectrics.
+  bool is_every_light = false;  ///< A sample of each light, instead of one light chosen at random.
   int light_samples = 1, bsdf_samples = 1;  ///< At each vertex; more than 1 only where most_vertices is 1.
 
   bool has_light_samples() const { return direct_light != DirectLight::bsdf && light_samples > 0; }

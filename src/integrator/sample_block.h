@@ -97,8 +97,8 @@ struct SampleBlock {
 
   BlockCounts counts;
   StageClock clock;
-  /// Called with the number of each vertex once its samples have been taken, where set: benchmarks and replays
-  /// look on.
+  /// Called with the number of each vertex once its samples have been taken, where set: benchmarks and
+  /// replays look on.
   const std::function<void(const SampleBlock&, int vertex)>* on_vertex = nullptr;
 };
 

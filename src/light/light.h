@@ -1,10 +1,10 @@
 // Lights: how ONE light emits and is sampled.
 //
 // Lanes of a packet may hold different lights, so a kind of light is a table with one column a field, and its
-// functions take a lane-varying row. Two sorts: area lights (mesh, rectangle, sphere, disk) have `sample_position`
-// and `pdf_area`; the others have `sample`, and those at infinity that a ray can meet also `radiance` and
-// `pdf_solid_angle`. To add a kind: write light/NAME_light.h, give it a LightKind, a member and a case in
-// light_tables.h, a line in scene/load_light.cpp, and add it to the chi-squared tests in
+// functions take a lane-varying row. Two sorts: area lights (mesh, rectangle, sphere, disk) have
+// `sample_position` and `pdf_area`; the others have `sample`, and those at infinity that a ray can meet also
+// `radiance` and `pdf_solid_angle`. To add a kind: write light/NAME_light.h, give it a LightKind, a member
+// and a case in light_tables.h, a line in scene/load_light.cpp, and add it to the chi-squared tests in
 // tests/statistical/light_test.cpp.
 #pragma once
 
@@ -53,18 +53,18 @@ class Lights : public LightTables {
   /// The light that `light` sends to a receiver at `reference`. \param u 32-bit fractions, so that choosing
   /// among many triangles leaves enough of them \param pmf with which the light was chosen
   template <class F>
-  LightSample<F> sample(const Geometry& geometry, const Int<F>& light, const F& pmf, const Vec3<F>& reference,
-                        const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+  LightSample<F> sample(const Int<F>& light, const F& pmf, const Vec3<F>& reference, const Vec2<UInt<F>>& u,
+                        const Mask<F>& m) const {
     if (area_count_ == count())
-      return light_sample_at<F>(sample_position<F>(geometry, light, reference, u, m), light,
-                                radiance<F>(light, m), pmf, reference, m);
+      return light_sample_at<F>(sample_position<F>(light, reference, u, m), light, radiance<F>(light, m), pmf,
+                                reference, m);
     LightSample<F> result = no_light_sample<F>();
     const Color<F> scale = strength<F>(light, m);
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       LightSample<F> sample = no_light_sample<F>();
       if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>) {
-        sample = light_sample_at<F>(table.template sample_position<F>(geometry, row, reference, u, lanes),
-                                    light, scale, pmf, reference, lanes);
+        sample = light_sample_at<F>(table.template sample_position<F>(row, reference, u), light, scale, pmf,
+                                    reference, lanes);
       } else {
         sample = table.template sample<F>(scene_bounds_, row, reference, u, lanes);
         sample.radiance_over_pdf = sample.radiance_over_pdf * scale * (F(1) / pmf);
@@ -79,16 +79,14 @@ class Lights : public LightTables {
   /// A point on an area light for a receiver at `reference`. Lanes outside of `m`, or with another light, get
   /// anything.
   template <class F>
-  LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& light, const Vec3<F>& reference,
-                                const Vec2<UInt<F>>& u_light, const Mask<F>& m) const {
+  LightPoint<F> sample_position(const Int<F>& light, const Vec3<F>& reference, const Vec2<UInt<F>>& u_light,
+                                const Mask<F>& m) const {
     // Most scenes have lights of one kind only: then no lane needs to be chosen from another table.
-    if (meshes_only())
-      return meshes.sample_position<F>(geometry, select(m, light, Int<F>(0)), reference, u_light, m);
+    if (meshes_only()) return meshes.sample_position<F>(select(m, light, Int<F>(0)), reference, u_light);
     LightPoint<F> point = no_light_point<F>();
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>)
-        point =
-            select(lanes, table.template sample_position<F>(geometry, row, reference, u_light, lanes), point);
+        point = select(lanes, table.template sample_position<F>(row, reference, u_light), point);
     });
     return point;
   }

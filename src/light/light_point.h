@@ -11,7 +11,7 @@ template <class F>
 struct LightPoint {
   Vec3<F> position;  ///< World, m.
   Vec3<F> ng;        ///< Unit geometric normal; what the Jacobian uses.
-  F pdf_area;    ///< 1/m^2; 0: no sample (a receiver inside of a sphere).
+  F pdf_area;        ///< 1/m^2; 0: no sample (a receiver inside of a sphere).
   Int<F> piece;  ///< 0 .. light_pieces - 1: near points of a light have near pieces; orders shadow rays only.
 };
 
@@ -25,12 +25,13 @@ LightPoint<F> no_light_point() {
 
 template <class F>
 LightPoint<F> select(const Mask<F>& m, const LightPoint<F>& a, const LightPoint<F>& b) {
-  return {select(m, a.position, b.position), select(m, a.ng, b.ng),
-          select(m, a.pdf_area, b.pdf_area), select(m, a.piece, b.piece)};
+  return {select(m, a.position, b.position), select(m, a.ng, b.ng), select(m, a.pdf_area, b.pdf_area),
+          select(m, a.piece, b.piece)};
 }
 
-/// Whether the front of a light at `position`, with geometric normal `ng`, faces a receiver at `reference`. Not
-/// one that lies in the light's own plane within rounding: its cosine would be an error over a small number.
+/// Whether the front of a light at `position`, with geometric normal `ng`, faces a receiver at `reference`.
+/// Not one that lies in the light's own plane within rounding: its cosine would be an error over a small
+/// number.
 template <class F>
 Mask<F> is_front_facing(const Vec3<F>& position, const Vec3<F>& ng, const Vec3<F>& reference) {
   constexpr float rounding = 1e-6f;

@@ -27,8 +27,8 @@ class MeshLights {
   /// The triangle comes from u.y through an alias table (O(1)); what is left of u.y is stretched back over
   /// [0, 1).
   template <class F>
-  LightPoint<F> sample_position(const Geometry& geometry, const Int<F>& row, const Vec3<F>& /*reference*/,
-                                const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+  LightPoint<F> sample_position(const Int<F>& row, const Vec3<F>& /*reference*/,
+                                const Vec2<UInt<F>>& u) const {
     using I = Int<F>;
     const I first = first_triangle_.at(row), count = triangle_count_.at(row);
     const I bucket = as_int(mul_hi(u.y, as_uint(count)));

@@ -23,8 +23,8 @@ class RectangleLights {
   }
 
   template <class F>
-  LightPoint<F> sample_position(const Geometry& /*geometry*/, const Int<F>& row, const Vec3<F>& /*reference*/,
-                                const Vec2<UInt<F>>& u, const Mask<F>& /*m*/) const {
+  LightPoint<F> sample_position(const Int<F>& row, const Vec3<F>& /*reference*/,
+                                const Vec2<UInt<F>>& u) const {
     const Int<F> at = row * Int<F>(12);
     const auto vec = [&](int offset) {
       const float* field = fields_.data() + offset;

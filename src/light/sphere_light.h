@@ -21,8 +21,7 @@ class SphereLights {
   }
 
   template <class F>
-  LightPoint<F> sample_position(const Geometry& /*geometry*/, const Int<F>& row, const Vec3<F>& reference,
-                                const Vec2<UInt<F>>& u, const Mask<F>& /*m*/) const {
+  LightPoint<F> sample_position(const Int<F>& row, const Vec3<F>& reference, const Vec2<UInt<F>>& u) const {
     const Cone<F> cone(*this, row, reference);
     const Vec2<F> u_cone{to_unit_float(u.x), to_unit_float(u.y)};
     // From the angle at the receiver to the angle at the centre, from which the point follows without

@@ -79,8 +79,9 @@ void test_scene(TestRun& run, const Object& scene, double reference, std::uint64
     LoadedScene loaded =
         load_scene({scene, run.test.dialect, run.test.dialect_reason, run.test.directory, {}});
     std::vector<UnreadKey> unread;
-    const IntegratorSettings integrator =
-        loaded.integrator.family.empty() ? IntegratorSettings{} : make_integrator(loaded.integrator, run.test.dialect, unread);
+    const IntegratorSettings integrator = loaded.integrator.family.empty()
+                                              ? IntegratorSettings{}
+                                              : make_integrator(loaded.integrator, run.test.dialect, unread);
     run.warnings.insert(run.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     run.warn(unread);
     const SceneLuminance luminances =

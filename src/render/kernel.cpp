@@ -30,7 +30,8 @@ void set_invalid_aside(TileJob& job, SampleBlock& block, int samples_per_replica
       ++job.invalid_samples;
       if (job.invalid->size() < most_invalid_noted)
         job.invalid->push_back({block.pixel_x[s], block.pixel_y[s],
-                                pixels.sample_of(s) / samples_per_replicate, pixels.sample_of(s) % samples_per_replicate, sample});
+                                pixels.sample_of(s) / samples_per_replicate,
+                                pixels.sample_of(s) % samples_per_replicate, sample});
     }
   }
 }

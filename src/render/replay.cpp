@@ -46,7 +46,8 @@ SampleTrace::Vertex vertex_of(const Scene& scene, const PathRules& rules, const 
   trace.kind = vertex.is_surface ? SampleTrace::Vertex::Kind::surface : SampleTrace::Vertex::Kind::medium;
   const std::int32_t geometry = path.hit.geometry[0];
   if (vertex.is_surface)
-    trace.surface = {vertex.ng,       vertex.ns, geometry, path.hit.primitive[0],
+    trace.surface = {vertex.ng,       vertex.ns,
+                     geometry,        path.hit.primitive[0],
                      vertex.material, scene.geometry.light[std::size_t(geometry)]};
   if (number == rules.most_vertices) return trace;
   if (rules.has_light_samples() && scene.lights.count() > 0) {

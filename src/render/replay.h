@@ -26,8 +26,9 @@ struct SampleTrace {
     std::int32_t light;
     Vec3f end;  ///< Of the shadow segment: on the light, or beyond the scene.
     Colorf radiance_over_pdf;
-    float pdf_solid_angle;  ///< 1/sr, the choice of the light included; 0: no sample. Infinite: a Dirac delta.
-    Colorf unshadowed;      ///< What it adds where nothing hides it: BSDF, cosine, weight and path included.
+    float
+        pdf_solid_angle;  ///< 1/sr, the choice of the light included; 0: no sample. Infinite: a Dirac delta.
+    Colorf unshadowed;    ///< What it adds where nothing hides it: BSDF, cosine, weight and path included.
     bool is_shadow_ray_cast, is_visible;
   };
   struct BsdfSample {
@@ -39,7 +40,7 @@ struct SampleTrace {
   /// A place that the path came to.
   struct Vertex {
     enum class Kind { surface, medium, nothing } kind;
-    Vec3f position;                           ///< Not of nothing.
+    Vec3f position;  ///< Not of nothing.
     std::optional<Surface> surface;
     std::optional<LightSample> light_sample;  ///< The last, where the integrator takes several.
     std::optional<BsdfSample> bsdf_sample;    ///< Likewise.

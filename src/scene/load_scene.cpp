@@ -41,13 +41,14 @@ class Loader {
     const bool has_textures = std::any_of(materials_.begin(), materials_.end(),
                                           [](const Bsdf& material) { return has_texture(material); });
     const double seconds_build = seconds_since(start);
-    return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_),
-                  std::move(rays), std::move(materials_), has_textures, std::move(lights_), medium_, sampler_},
-            integrator_ ? *integrator_ : Object{},
-            samples_per_pixel_,
-            warnings(),
-            seconds_read_,
-            seconds_build};
+    return {
+        Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_), std::move(rays),
+              std::move(materials_), has_textures, std::move(lights_), medium_, sampler_},
+        integrator_ ? *integrator_ : Object{},
+        samples_per_pixel_,
+        warnings(),
+        seconds_read_,
+        seconds_build};
   }
 
  private:

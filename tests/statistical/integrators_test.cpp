@@ -59,8 +59,10 @@ void expect_equal_means(const Scene& scene, int samples_per_pixel, double level,
   for (const Method& method : methods) {
     // Another seed for each: the test wants independent estimates. BSDF sampling alone finds a small light so
     // rarely that fewer samples would not be normally distributed.
-    const int samples = method.integrator == std::string("direct") ? 4 * samples_per_pixel : samples_per_pixel;
-    RenderResult result = render(scene, render_settings(method.integrator, samples, 16, ++seed, method.heuristic));
+    const int samples =
+        method.integrator == std::string("direct") ? 4 * samples_per_pixel : samples_per_pixel;
+    RenderResult result =
+        render(scene, render_settings(method.integrator, samples, 16, ++seed, method.heuristic));
     EXPECT_EQ(result.counts.invalid_samples, 0) << what << ", " << method.name;
     films.push_back(std::move(result.film));
   }

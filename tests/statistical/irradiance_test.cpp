@@ -51,7 +51,8 @@ LoadedScene floor_scene(const std::string& lights, const std::vector<SceneFile>&
 
 void expect_radiance(const Scene& scene, double exact, const std::string& what) {
   for (const Method& method : methods) {
-    const RenderResult result = render(scene, render_settings(method.integrator, 1024, 4, 7, method.heuristic));
+    const RenderResult result =
+        render(scene, render_settings(method.integrator, 1024, 4, 7, method.heuristic));
     EXPECT_EQ(result.counts.invalid_samples, 0);
     const RunningStatistics radiance = statistics_of_pixels(result.film);
     const MeanTest test = t_test(radiance, exact, exact * exact * 1e-12);
@@ -181,8 +182,7 @@ TEST(Furnace, WhatTheCameraSeesOfALightIsItsRadianceAndNothingFromBehind) {
     const LoadedScene loaded = load_scene_text(
         camera_xml({0.2, 0.1, 3}, {0, 0, 0}, 0.1, side_px, "independent") +
         rectangle_xml({0, 0, 0}, {1, 0, 0}, {0, side, 0}, light_xml(radiance) + diffuse_xml(0)));
-    const Color<double> mean =
-        render(loaded.scene, render_settings("mis", 4, 2, 1)).film.mean();
+    const Color<double> mean = render(loaded.scene, render_settings("mis", 4, 2, 1)).film.mean();
     EXPECT_EQ(mean.r, side > 0 ? radiance : 0);
   }
 }

@@ -4,13 +4,12 @@
 // Seen to fail when: the alias table's thresholds are all 2^31; what is left of u.y is not stretched back;
 // square_to_triangle does not fold; sin_max_sq has the radius unsquared; pdf_area of the sphere lacks the
 // cosine; the sine at its centre comes from the cosine (near receivers); the rectangle's pdf is 2 / area;
-// some lights are chosen more often; a disk is not uniform, half as bright or wide, or its density 1 % off, or
-// that of its box, or its radius is u; a
-// point's power is over 2 pi, its distance left out; a spot's power is by the mean of its edges' cosines, or
-// it shines backwards; a direction is reversed or not turned; of a map, the seam is left out, phi runs the
-// other way, the rotation is transposed, sin(theta) is left out of weights or density, the caps are even in
-// theta, places in a cell are uniform, or the search for a cell is off; the choice's pmf is missing; a
-// segment ends within the scene.
+// some lights are chosen more often; a disk is not uniform, half as bright or wide, or its density 1 % off,
+// or that of its box, or its radius is u; a point's power is over 2 pi, its distance left out; a spot's power
+// is by the mean of its edges' cosines, or it shines backwards; a direction is reversed or not turned; of a
+// map, the seam is left out, phi runs the other way, the rotation is transposed, sin(theta) is left out of
+// weights or density, the caps are even in theta, places in a cell are uniform, or the search for a cell is
+// off; the choice's pmf is missing; a segment ends within the scene.
 #include "light/light.h"
 
 #include "film/image_file.h"
@@ -69,7 +68,7 @@ struct Alone {
   Lights lights;
 
   LightPoint<float> sample(const Vec3f& reference, const Vec2<std::uint32_t>& u) const {
-    const LightPoint<float> point = lights.sample_position<float>(geometry, 0, reference, u, true);
+    const LightPoint<float> point = lights.sample_position<float>(0, reference, u, true);
     // Both sides of every MIS weight see one density.
     EXPECT_NEAR(point.pdf_area, (lights.pdf_area<float>(0, reference, point.position, point.ng, true)),
                 1e-5f * point.pdf_area);
@@ -237,14 +236,12 @@ TEST(SphereLight, GivesNoSampleInside) {
   add_sphere_light(alone, {{0, 0, 0}, 1});
   RandomBits random(8);
   for (int i = 0; i < 100; ++i)
-    EXPECT_EQ((alone.lights.sample_position<float>(alone.geometry, 0, {0.2f, 0.1f, 0}, random.square(), true)
-                   .pdf_area),
-              0);
+    EXPECT_EQ((alone.lights.sample_position<float>(0, {0.2f, 0.1f, 0}, random.square(), true).pdf_area), 0);
 }
 
 /// The light alone among many, as an environment: its directions against its density.
 LightSample<float> sample_of(const Alone& alone, const Vec2<std::uint32_t>& u) {
-  return alone.lights.sample<float>(alone.geometry, 0, 1, {0.5f, -1, 2}, u, true);
+  return alone.lights.sample<float>(0, 1, {0.5f, -1, 2}, u, true);
 }
 
 void expect_directions_follow_density(const Alone& alone, const std::string& what, int steps,

@@ -85,7 +85,8 @@ TEST_P(Replay, SaysHowTheRadianceCameAbout) {
       ASSERT_GE(trace.vertices.size(), 2u);
       const SampleTrace::Vertex& second = trace.vertices[1];
       if (second.kind == SampleTrace::Vertex::Kind::surface) {
-        EXPECT_NEAR(length(normalize(second.position - first.position) - first.bsdf_sample->direction), 0, 1e-3);
+        EXPECT_NEAR(length(normalize(second.position - first.position) - first.bsdf_sample->direction), 0,
+                    1e-3);
       }
       if (settings.integrator.name == "direct") {
         const bool meets_light = second.surface && second.surface->light >= 0 &&

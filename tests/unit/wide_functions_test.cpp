@@ -178,8 +178,8 @@ std::string textured_xml(const std::string& texture) {
   return fmt::format("<bsdf type=\"diffuse\">{}</bsdf>", texture);
 }
 
-/// At least 3 area lights of all kinds and, with more than 8, also other_lights; materials 0 diffuse, 1 glossy, 2 a light's, then all others in the order
-/// of the table, then three textures; geometry 0 is smooth.
+/// At least 3 area lights of all kinds and, with more than 8, also other_lights; materials 0 diffuse, 1
+/// glossy, 2 a light's, then all others in the order of the table, then three textures; geometry 0 is smooth.
 LoadedScene test_scene(std::uint32_t lights) {
   constexpr std::uint32_t few = 8, others = 6;
   const TemporaryFolder folder;

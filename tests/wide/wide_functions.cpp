@@ -186,15 +186,13 @@ void split(const Scene&, Packet& p) { p.give(split_unit(p.real())); }
 void light_position(const Scene& scene, Packet& p) {
   const I light = as_int(p.word());
   const Vec3<F> reference = p.vec();
-  const LightPoint<F> point =
-      scene.lights.sample_position<F>(scene.geometry, light, reference, p.words(), every_lane());
+  const LightPoint<F> point = scene.lights.sample_position<F>(light, reference, p.words(), every_lane());
   p.give(point.position), p.give(point.ng);
 }
 void light_pdf(const Scene& scene, Packet& p) {
   const I light = as_int(p.word());
   const Vec3<F> reference = p.vec();
-  const LightPoint<F> point =
-      scene.lights.sample_position<F>(scene.geometry, light, reference, p.words(), every_lane());
+  const LightPoint<F> point = scene.lights.sample_position<F>(light, reference, p.words(), every_lane());
   p.give(point.pdf_area);
   p.give(scene.lights.pdf_area<F>(light, reference, point.position, point.ng, every_lane()));
 }
@@ -279,7 +277,7 @@ constexpr WideFunction functions[]{
     {"textures", 2, 9, Words::floats, run<textures>},
     {"inverse_erf", 1, 1, Words::floats, run<inverse_error_function>},
     {"split_unit", 1, 2, Words::integers, run<split>},
-    {"Lights::sample_position", 6, 9, Words::floats, run<light_position>},
+    {"Lights::sample_position", 6, 6, Words::floats, run<light_position>},
     {"Lights::pdf_area", 6, 2, Words::floats, run<light_pdf>},
     {"sample_lights", 5, 7, Words::floats, run<lights_sample>},
     {"environment", 3, 4, Words::floats, run<environment>},
