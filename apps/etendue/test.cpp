@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::vector<std::string> files;
-  std::string json_file, isa, dialect;
+  std::string json_file, isa, dialect, sampler = "sobol";
   std::uint64_t seed = 0;
   int threads = 0;
   bool is_quiet = false;
@@ -121,7 +121,8 @@ void print_summary(const Options& options, const Counts& counts) {
 int run(const Options& options) {
   if (!options.json_file.empty()) check_destination(options.json_file);
   const TestSettings settings{options.seed,
-                              options.isa.empty() ? available_isas().back() : isa_from_name(options.isa)};
+                              options.isa.empty() ? available_isas().back() : isa_from_name(options.isa),
+                              sampler_from_name(options.sampler)};
   if (!options.dialect.empty()) dialect_from_name(options.dialect);
   const ThreadLimit thread_limit(options.threads);
   Counts counts;
@@ -165,6 +166,10 @@ void add_test_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->check(CLI::Range(0, 4096));
   command->add_option("--isa", options->isa, "Instruction set: scalar, v2, v3 or v4 [the widest here]");
+  command
+      ->add_option("--sampler", options->sampler,
+                   "sobol: fewer correct files fail than their level says; independent: exactly as many")
+      ->capture_default_str();
   command->add_option("--dialect", options->dialect, "Read the files as nori-2012, nori-eth or nori");
   command->add_flag("--quiet", options->is_quiet, "Print only cases that fail, and the summary");
   command->callback([options, &exit_code] { exit_code = run(*options); });

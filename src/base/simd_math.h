@@ -64,11 +64,14 @@ void sincos_turns(const xsimd::batch<float, A>& t, xsimd::batch<float, A>& sine,
   cosine = pair.second;
 }
 
-/// The angle of (x, y) from the x axis, in (-pi, pi].
-inline float atan2(float y, float x) { return std::atan2(y, x); }
+/// The angle of (x, y) from the x axis, in [-pi, pi]; 0 for (0, 0).
+inline float atan2(float y, float x) { return x == 0 && y == 0 ? 0 : std::atan2(y, x); }
 template <class A>
 xsimd::batch<float, A> atan2(const xsimd::batch<float, A>& y, const xsimd::batch<float, A>& x) {
-  return xsimd::atan2(y, x);
+  using F = xsimd::batch<float, A>;
+  // xsimd's own gives NaN at the origin.
+  const auto is_origin = mask_and(x == F(0), y == F(0));
+  return select(is_origin, F(0), xsimd::atan2(y, select(is_origin, F(1), x)));
 }
 
 /// 32 random bits as a float in [0, 1): the upper 24 bits.

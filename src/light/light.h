@@ -24,8 +24,7 @@ class Lights : public LightTables {
  public:
   /// \param strength radiance (W/(m^2 sr)) of area lights and disks, intensity (W/sr) of point and spot
   /// lights, irradiance (W/m^2) of directional ones, a factor of environment maps
-  /// \param row what the table of its kind returned for this light, the latest of that table
-  /// \return the new light's id
+  /// \param row what the table of its kind returned for it, the latest \return the new light's id
   std::int32_t add(const Colorf& strength, std::string name, LightKind kind, std::int32_t row);
 
   /// The sphere around all shapes, which lights at infinity lie outside of.
@@ -58,22 +57,7 @@ class Lights : public LightTables {
     if (area_count_ == count())
       return light_sample_at<F>(sample_position<F>(light, reference, u, m), light, radiance<F>(light, m), pmf,
                                 reference, m);
-    LightSample<F> result = no_light_sample<F>();
-    const Color<F> scale = strength<F>(light, m);
-    for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
-      LightSample<F> sample = no_light_sample<F>();
-      if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>) {
-        sample = light_sample_at<F>(table.template sample_position<F>(row, reference, u), light, scale, pmf,
-                                    reference, lanes);
-      } else {
-        sample = table.template sample<F>(scene_bounds_, row, reference, u, lanes);
-        sample.radiance_over_pdf = sample.radiance_over_pdf * scale * (F(1) / pmf);
-        sample.pdf = sample.pdf * pmf;
-        sample.light = light;
-      }
-      result = select(lanes, sample, result);
-    });
-    return result;
+    return sample_any_kind<F>(light, pmf, reference, u, m);
   }
 
   /// A point on an area light for a receiver at `reference`. Lanes outside of `m`, or with another light, get
@@ -128,6 +112,29 @@ class Lights : public LightTables {
   }
 
  private:
+  /// Apart, so that the code of all kinds does not weigh on scenes with area lights only.
+  template <class F>
+  [[gnu::noinline]] LightSample<F> sample_any_kind(const Int<F>& light,
+                                                   const F& pmf, const Vec3<F>& reference,
+                                                   const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+    LightSample<F> result = no_light_sample<F>();
+    const Color<F> scale = strength<F>(light, m);
+    for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
+      LightSample<F> sample = no_light_sample<F>();
+      if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>) {
+        sample = light_sample_at<F>(table.template sample_position<F>(row, reference, u),
+                                    light, scale, pmf, reference, lanes);
+      } else {
+        sample = table.template sample<F>(scene_bounds_, row, reference, u, lanes);
+        sample.radiance_over_pdf = sample.radiance_over_pdf * scale * (F(1) / pmf);
+        sample.pdf = sample.pdf * pmf;
+        sample.light = light;
+      }
+      result = select(lanes, sample, result);
+    });
+    return result;
+  }
+
   /// Then a light's id is its row.
   bool meshes_only() const { return meshes.count() == count(); }
 

@@ -105,9 +105,10 @@ struct Observed {
 };
 
 template <class Model>
-Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, std::uint64_t seed) {
+Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, SamplerKind sampler,
+                 std::uint64_t seed) {
   constexpr std::int64_t samples_a_task = 16384;
-  const RandomSquares u_bsdf(seed);
+  const RandomSquares u_bsdf(sampler, seed);
   std::atomic<bool> has_dirac{false};
   tbb::combinable<Observed> parts([&] { return Observed{std::vector<double>(rules.cells()), 0}; });
   const auto run_task = [&](std::int64_t task) {
@@ -203,11 +204,11 @@ void run_chi2test(TestRun& run) {
         std::vector<UnreadKey> unread_of_bsdf;
         const Bsdf material = make_bsdf(bsdf, run.test.directory, unread_of_bsdf);
         if (direction == 0) run.warn(unread_of_bsdf);
-        const Vec3f wo = random_viewer(rules, RandomSquares(hash64(seed))[0]);
+        const Vec3f wo = random_viewer(rules, RandomSquares(SamplerKind::independent, hash64(seed))[0]);
         std::visit(
             [&](const auto& model) {
               const auto at_point = model.at(Vec2f{0, 0}, true);
-              judge(measured, observe(at_point, wo, rules, seed), expect(at_point, wo, rules), rules);
+              judge(measured, observe(at_point, wo, rules, run.settings.sampler, seed), expect(at_point, wo, rules), rules);
             },
             material);
       });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/isa.h"
+#include "sampler/sampler.h"
 #include "scenefile/parameters.h"
 
 #include <cstdint>
@@ -17,6 +18,9 @@ namespace etendue {
 struct TestSettings {
   std::uint64_t seed = 0;
   Isa isa = Isa::scalar;  ///< For scenes; BSDFs and lights are tested one lane wide.
+  /// Sobol points make p-values cautious: means scatter less than the t-test believes, so that a correct
+  /// renderer fails less often than the level says, and a wrong one no later. Independent ones make them exact.
+  SamplerKind sampler = SamplerKind::sobol;
 };
 
 /// What became of one case. A number that the kind of test does not have is NaN.

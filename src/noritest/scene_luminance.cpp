@@ -15,13 +15,13 @@ namespace {
 constexpr std::int64_t samples_a_task = 8192;
 
 /// A single pixel that is as large as the film.
-void cover_film_by_one_pixel(Scene& scene) {
+void cover_film_by_one_pixel(Scene& scene, SamplerKind sampler) {
   Camera& camera = scene.camera;
   camera.per_px_x = camera.per_px_x * float(camera.width_px);
   camera.per_px_y = camera.per_px_y * float(camera.height_px);
   camera.width_px = camera.height_px = 1;
   scene.filter = PixelFilter::box();
-  scene.sampler = SamplerKind::independent;
+  scene.sampler = sampler;
 }
 
 SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, const Kernel& kernel,
@@ -52,9 +52,9 @@ SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, c
 }  // namespace
 
 SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrator, std::int64_t count,
-                                std::uint64_t seed, Isa isa) {
-  cover_film_by_one_pixel(scene);
-  const Kernel& kernel = kernel_for(isa);
+                                const TestSettings& test, std::uint64_t seed) {
+  cover_film_by_one_pixel(scene, test.sampler);
+  const Kernel& kernel = kernel_for(test.isa);
   std::vector<SceneLuminance> parts(std::size_t((count + samples_a_task - 1) / samples_a_task));
   tbb::enumerable_thread_specific<std::unique_ptr<SampleBlock>> blocks(
       [] { return std::make_unique<SampleBlock>(); });
@@ -64,7 +64,7 @@ SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrat
     settings.samples_per_pixel = int(std::min(samples_a_task, count - std::int64_t(part) * samples_a_task));
     settings.replicates = 1;
     settings.seed = hash64(hash64(seed) + part);
-    settings.isa = isa;
+    settings.isa = test.isa;
     parts[part] = render_task(scene, settings, kernel, *blocks.local());
   });
   SceneLuminance all;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "integrator/integrator.h"
-#include "render/isa.h"
+#include "noritest/noritest.h"
 #include "scene/scene.h"
 #include "stats/running.h"
 
@@ -15,10 +15,10 @@ struct SceneLuminance {
   std::int64_t invalid_samples = 0;  ///< Not finite or negative; each counts as 0 in `samples`.
 };
 
-/// Renders `count` samples whose places are uniform over the whole film, with independent random numbers,
-/// through the kernel of `isa`. The scene's camera, filter and sampler are replaced. A function of the seed
+/// Renders `count` samples whose places are uniform over the whole film, through the
+/// kernel and with the sampler that `test` says. The scene's camera, filter and sampler are replaced. A function of the seed
 /// alone, not of the number of threads.
 SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrator, std::int64_t count,
-                                std::uint64_t seed, Isa isa);
+                                const TestSettings& test, std::uint64_t seed);
 
 }  // namespace etendue

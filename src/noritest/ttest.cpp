@@ -85,7 +85,7 @@ void test_scene(TestRun& run, const Object& scene, double reference, std::uint64
     run.warnings.insert(run.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     run.warn(unread);
     const SceneLuminance luminances =
-        sample_luminance(loaded.scene, integrator, rules.sample_count, seed, run.settings.isa);
+        sample_luminance(loaded.scene, integrator, rules.sample_count, run.settings, seed);
     judge(measured, luminances.samples, luminances.invalid_samples, rules);
   });
 }
@@ -119,7 +119,7 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
     run.warn(unread);
     const double angle = angle_deg * std::numbers::pi / 180;
     const Vec3f wo{float(std::sin(angle)), 0, float(std::cos(angle))};
-    const RandomSquares u_bsdf(seed);
+    const RandomSquares u_bsdf(run.settings.sampler, seed);
     Samples samples;
     std::visit(
         [&](const auto& model) {
@@ -180,7 +180,7 @@ void test_emitter(TestRun& run, const Object& emitter, double distance, double r
     add_light(emitter, run.test.directory, lights, unread);
     run.warn(unread);
     const Geometry empty;
-    const RandomSquares u_light(seed);
+    const RandomSquares u_light(run.settings.sampler, seed);
     const Vec3f receiver{0, 0, float(distance)};
     Samples samples;
     for (std::int64_t i = 0; i < rules.sample_count; ++i) {

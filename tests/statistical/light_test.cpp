@@ -400,6 +400,19 @@ TEST(Envmap, TexelsStandWhereTheConventionSays) {
       0.5 * (rgb[std::size_t(middle)] + rgb[std::size_t(middle + 3 * (width - 1))]), 1e-3);
 }
 
+TEST(Envmap, HasAValueAtThePolesAndNoneForNoDirection) {
+  Alone alone;
+  add_envmap(alone, 8, 6, random_map(8, 6, false));
+  for (const float y : {1.0f, -1.0f})
+    for (const float zero : {0.0f, -0.0f}) {
+      EXPECT_GT((alone.lights.infinite_radiance<float>(0, {zero, y, zero}, true).g), 0);
+      const float pdf = alone.lights.infinite_pdf_solid_angle<float>(0, {zero, y, zero}, true);
+      EXPECT_TRUE(pdf > 0 && std::isfinite(pdf)) << pdf;
+    }
+  EXPECT_TRUE(std::isnan(alone.lights.infinite_radiance<float>(0, {NAN, 0, 1}, true).g));
+  EXPECT_TRUE(std::isnan(alone.lights.infinite_radiance<float>(0, {NAN, NAN, NAN}, true).g));
+}
+
 TEST(Envmap, RadianceOverDensityIsNearlyConstantWhereTheMapIsSmooth) {
   constexpr int width = 64, height = 32;
   std::vector<float> rgb;

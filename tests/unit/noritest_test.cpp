@@ -31,7 +31,8 @@ class NoriTest : public testing::Test {
     const std::filesystem::path file = folder_.path() / "t.xml";
     std::filesystem::remove(file);
     test::write_file(file, text);
-    return run_test_file(read_test_file(file, dialect), {.seed = seed}, {}, warnings_);
+    return run_test_file(read_test_file(file, dialect), {.seed = seed, .sampler = SamplerKind::independent}, {},
+                         warnings_);
   }
   std::string error(const std::string& text) {
     try {
