@@ -86,8 +86,14 @@ int main(int argc, char** argv) {
   camera.per_px_y = {0, 0, 1.0f / 16};
   Lights lights;
   lights.add({1, 1, 1}, "sheet", LightKind::mesh, lights.meshes.add(geometry, 0));
-  const Scene scene{camera,      PixelFilter::box(), std::move(geometry), std::move(rays),
-                    {Diffuse{}}, std::move(lights),  SamplerKind::sobol};
+  const Scene scene{.camera = camera,
+                    .filter = PixelFilter::box(),
+                    .geometry = std::move(geometry),
+                    .rays = std::move(rays),
+                    .materials = {Diffuse{}},
+                    .lights = std::move(lights),
+                    .medium = std::nullopt,
+                    .sampler = SamplerKind::sobol};
   RenderSettings settings;
   settings.samples_per_pixel = 1;
   settings.replicates = 1;

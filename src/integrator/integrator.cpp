@@ -48,17 +48,6 @@ constexpr std::array meanings{
     Meaning{"path_mats", "path_mats", path_rules(DirectLight::bsdf)},
 };
 
-/// Names whose meaning belongs to a generation; others mean the same in all.
-struct DialectName {
-  std::string_view name;
-  Dialect dialect;
-  std::string_view meaning;
-};
-constexpr std::array dialect_names{
-    DialectName{"direct", Dialect::nori_eth, "every_light"},
-    DialectName{"path", Dialect::nori_2012, "path_ems"},
-};
-
 const Meaning* find(std::string_view name) {
   for (const Meaning& meaning : meanings)
     if (meaning.name == name) return &meaning;
@@ -150,7 +139,7 @@ const std::vector<Plugin>& integrator_plugins() {
       plugin("direct_mis", "Another name of mis.", {heuristic_parameter}),
       plugin("every_light", "Each sample takes one point on every light, and adds them up."),
       plugin("whitted", "Light samples, seen through mirrors and smooth dielectrics too."),
-      plugin("path", "path_mis; in the dialect nori-2012, path_ems."),
+      plugin("path", "Another name of path_mis.", {heuristic_parameter}),
       plugin("path_ems", "Paths with any number of bounces; at each, direct light by light samples."),
       plugin("path_mats", "Paths with any number of bounces that find lights by chance."),
       plugin("path_mis",
@@ -176,8 +165,7 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
     if (candidate.name == description.type) known = &candidate;
   if (!known) throw unknown_plugin(description, integrator_plugins());
   std::string_view name = description.type;
-  for (const DialectName& own : dialect_names)
-    if (own.name == name && own.dialect == dialect) name = own.meaning;
+  if (name == sampling_direct_plugin.name && dialect == Dialect::nori_eth) name = "every_light";
   Plugin described = *known;
   if (known->name == sampling_direct_plugin.name) described.parameters.clear();
   const Parameters parameters(description, described, unread);

@@ -33,8 +33,7 @@ std::string_view heuristic_name(DirectLight direct_light);  ///< "balance", "pow
 /// docs/scene_format.md. Throws InputError with the known names.
 IntegratorSettings make_integrator(const Object& description, Dialect dialect,
                                    std::vector<UnreadKey>& unread);
-/// From the command line: a name, its parameters at their defaults. `direct` is BRDF sampling, `path` is
-/// `path_mis`.
+/// From the command line: a name, its parameters at their defaults. `direct` is BRDF sampling.
 IntegratorSettings integrator_from_name(std::string_view name);
 
 }  // namespace etendue

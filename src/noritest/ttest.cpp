@@ -179,13 +179,12 @@ void test_emitter(TestRun& run, const Object& emitter, double distance, double r
     Lights lights;
     add_light(emitter, run.test.directory, lights, unread);
     run.warn(unread);
-    const Geometry empty;
     const RandomSquares u_light(run.settings.sampler, seed);
     const Vec3f receiver{0, 0, float(distance)};
     Samples samples;
     for (std::int64_t i = 0; i < rules.sample_count; ++i) {
       const LightSample<float> sample =
-          lights.sample<float>(empty, 0, 1, receiver, u_light.bits(std::uint32_t(i)), true);
+          lights.sample<float>(0, 1, receiver, u_light.bits(std::uint32_t(i)), true);
       samples.add(sample.is_there ? sample.radiance_over_pdf : Colorf{0, 0, 0});
     }
     judge(measured, samples.luminances, samples.invalid, rules);
