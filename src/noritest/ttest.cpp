@@ -136,7 +136,7 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
 enum class ReferenceOrder {
   each_bsdf_and_angle,  ///< ETH, Tuebingen: one for each BSDF at each angle.
   each_angle,           ///< 2012: all BSDFs share angles and references.
-  own_angles            ///< Since 2015: all share the references, each has angles of its own.
+  own_angles            ///< Current Nori: all share the references, each has angles of its own.
 };
 
 ReferenceOrder reference_order(const Parameters& parameters, std::size_t references, std::size_t bsdfs,

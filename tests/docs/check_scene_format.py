@@ -136,7 +136,7 @@ PLANTED = [
     ("a wrong unit", PAGE.replace("deg", "rad"), INFO, "unit 'rad'"),
     ("a unit missing", PAGE.replace("deg", ""), INFO, "unit ''"),
     ("a wrong type", PAGE.replace("| float", "| integer"), INFO, "type 'integer'"),
-    ("a family unknown", PAGE, INFO | {"phases": [{"name": "a", "parameters": []}]}, "phases: a family"),
+    ("a family unknown", PAGE, INFO | {"moods": [{"name": "a", "parameters": []}]}, "moods: a family"),
 ]
 
 

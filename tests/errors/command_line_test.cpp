@@ -237,7 +237,7 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   const ProgramResult replayed = run(command);
   EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
   EXPECT_THAT(replayed.out, AllOf(HasSubstr("camera ray"), HasSubstr("light sample      light 'lamp'"),
-                                  HasSubstr("radiance          inf")));
+                                  HasSubstr("radiance            inf")));
 }
 
 TEST_F(CommandLine, ReplayRefusesASampleThatTheRenderDoesNotHave) {
