@@ -4,7 +4,11 @@
 // Seen to fail when: Phong samples its lobe with exponent n + 1 or evaluates its density with n; the lobe is
 // chosen with probability ks in place of specular_probability; the mirror direction is -wo; u_lobe is not
 // stretched back; square_to_cosine_hemisphere takes radius = u.x; the cone's one_minus_cos is squared;
-// Phong's eval_ takes n + 1 for n + 2; the cosine is left out of the weight; PLANTED.
+// Phong's eval_ takes n + 1 for n + 2; the cosine is left out of the weight; a GGX density has alpha for
+// alpha^2; a visible normal is not stretched back in x; Beckmann's slope across is 10 % short; the density of
+// refraction lacks eta^2 or the cosine of wi; a refracted weight lacks the factor for radiance; eta is
+// inverted; split_unit gives the same bits twice; a conductor's weight lacks the shadowing of wi; the blend's
+// density has 3 for 4.
 #include "bsdf/bsdf.h"
 
 #include "base/warp.h"

@@ -1,6 +1,8 @@
 // Textures: what they give where, and the images they come from.
 //
-// Seen to fail when: PLANTED.
+// Seen to fail when: delta is added, or divided by scale; value1 and value2 are swapped; rows stand from the
+// top; pixels have their colour at their corners; a mirrored coordinate is one pixel off; 16-bit PNGs are
+// read low byte first.
 #include "texture/texture.h"
 
 #include "bsdf/bsdf.h"
@@ -29,8 +31,9 @@ TEST(Texture, CheckerboardSquaresHaveTheirSizeAndAreShiftedByWholeOnes) {
   EXPECT_EQ(at(plain, 0.6f, 0.3f), even);
   EXPECT_EQ(at(plain, -0.1f, 0.1f), odd);
   EXPECT_EQ(at(plain, -0.1f, -0.1f), even);
-  // u / scale - delta: 0.6 / 0.5 - 0.3 = 0.9 is in square 0, not 1 as (0.6 - 0.3) / 0.5 + 1 would be.
+  // 0.2 / 0.5 - 0.3 = 0.1 is in square 0; (0.2 - 0.3) / 0.5 would be in square -1.
   const Checkerboard shifted{even, odd, {0.3f, 0}, {0.5f, 0.25f}};
+  EXPECT_EQ(at(shifted, 0.2f, 0.1f), even);
   EXPECT_EQ(at(shifted, 0.6f, 0.1f), even);
   EXPECT_EQ(at(shifted, 0.1f, 0.1f), odd);
 }
