@@ -3,6 +3,7 @@
 #include "film/filter.h"
 #include "geometry/camera.h"
 #include "integrator/integrator.h"
+#include "noritest/noritest.h"
 #include "render/isa.h"
 #include "render/render.h"
 #include "sampler/sampler.h"
@@ -69,6 +70,7 @@ Json describe_program() {
   json["bsdfs"] = describe(bsdf_plugins());
   json["textures"] = describe(texture_plugins());
   json["lights"] = describe(light_plugins());
+  json["tests"] = describe(test_plugins());
   return json;
 }
 
@@ -81,7 +83,7 @@ void print(const Json& json) {
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
   for (const char* family :
-       {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "lights"}) {
+       {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "lights", "tests"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());

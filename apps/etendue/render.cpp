@@ -126,6 +126,7 @@ nlohmann::ordered_json stats(const Options& options, const RenderSettings& setti
   nlohmann::ordered_json json;
   json["scene"] = options.scene_file;
   json["dialect"] = dialect_name(description.dialect);
+  json["dialect_reason"] = description.dialect_reason;
   json["integrator"] = integrator_name(settings.integrator.kind);
   if (settings.integrator.kind == IntegratorKind::mis)
     json["heuristic"] = heuristic_name(settings.integrator.heuristic);

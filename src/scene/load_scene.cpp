@@ -128,7 +128,8 @@ class Loader {
   }
 
   std::vector<std::string> warnings() const {
-    std::vector<std::string> all = warnings_;
+    std::vector<std::string> all = description_.warnings;
+    all.insert(all.end(), warnings_.begin(), warnings_.end());
     for (const UnreadKey& key : unread_) all.push_back(key.message);
     return all;
   }

@@ -4,7 +4,6 @@
 #include "scenefile/value_text.h"
 
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
 #include <pugixml.hpp>
 #include <unordered_map>
@@ -15,27 +14,15 @@ namespace {
 
 constexpr int most_levels = 64;
 
-const std::vector<std::string> object_tags{
-    "scene", "test", "integrator", "sampler",   "camera", "rfilter",   "mesh",   "shape",
-    "bsdf",  "brdf", "emitter",    "luminaire", "phase",  "evaluator", "medium", "texture"};
+const std::vector<std::string> object_tags{"scene",   "test",      "integrator", "sampler", "camera",
+                                           "rfilter", "mesh",      "shape",      "bsdf",    "brdf",
+                                           "emitter", "luminaire", "phase",      "medium",  "texture"};
 const std::vector<std::string> property_tags{"boolean", "integer", "float",  "string",
                                              "color",   "point",   "vector", "transform"};
 const std::vector<std::string> operation_tags{"translate", "scale", "rotate", "lookat", "lookAt", "matrix"};
 
-constexpr std::array<std::pair<std::string_view, Dialect>, 3> dialects{
-    {{"nori-2012", Dialect::nori_2012}, {"nori-eth", Dialect::nori_eth}, {"nori", Dialect::nori}}};
-
-std::vector<std::string> dialect_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, dialect] : dialects) names.emplace_back(name);
-  return names;
-}
-
-std::optional<Dialect> find_dialect(std::string_view wanted) {
-  for (const auto& [name, dialect] : dialects)
-    if (name == wanted) return dialect;
-  return std::nullopt;
-}
+/// What forks put into a scene to judge or show its image: nothing of it is in the image.
+const std::vector<std::string> bystander_tags{"evaluator", "previewer", "denoiser"};
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -102,7 +89,7 @@ class Reader {
 
   std::shared_ptr<const SourceFile> source_;
   pugi::xml_document document_;
-  bool has_luminaire_ = false;
+  std::vector<std::string> warnings_;
 };
 
 Location Reader::place_of(const pugi::xml_node& node) const {
@@ -333,7 +320,6 @@ Property Reader::read_property(const Element& element) const {
 Object Reader::read_object(const Element& element, int level) {
   if (level > most_levels)
     throw InputError(element.location, fmt::format("elements are nested more than {} deep", most_levels));
-  has_luminaire_ = has_luminaire_ || element.tag == "luminaire";
   std::vector<std::string> attributes{"type", "name"};
   if (level == 1) attributes.emplace_back("dialect");
   element.allow_only(attributes,
@@ -360,6 +346,9 @@ Object Reader::read_object(const Element& element, int level) {
                          fmt::format("'{}' is stated twice in this <{}>, first in line {}", property.name,
                                      element.tag, line_and_column(first->second).line));
       object.properties.push_back(std::move(property));
+    } else if (element.tag == "scene" && contains(bystander_tags, child.tag)) {
+      warnings_.push_back(format_message(
+          child.location, fmt::format("<{}> is ignored: it has no part in the image", child.tag)));
     } else if (child.find("type") || contains(object_tags, child.tag)) {
       object.children.push_back(read_object(child, level + 1));
     } else if (contains(operation_tags, child.tag)) {
@@ -393,15 +382,12 @@ SceneDesc Reader::read(std::optional<Dialect> dialect) {
     scene.dialect = *find_dialect(stated->text);
     scene.dialect_reason =
         fmt::format("stated by the root element, line {}", line_and_column(stated->value_location).line);
-  } else if (has_luminaire_) {
-    scene.dialect = Dialect::nori_2012;
-    scene.dialect_reason = "the file has a <luminaire>, a tag of the first generation only";
   } else {
-    scene.dialect = Dialect::nori;
-    scene.dialect_reason =
-        "nothing in the file tells the generation, so it is read as the current one; "
-        "state dialect=\"nori-eth\" or \"nori-2012\" where it is older or of ETH";
+    const DialectGuess guess = recognize_dialect(scene.root);
+    scene.dialect = guess.dialect;
+    scene.dialect_reason = guess.reason;
   }
+  scene.warnings = std::move(warnings_);
   return scene;
 }
 
@@ -411,17 +397,6 @@ SceneDesc read_nori_xml(const std::filesystem::path& file, std::optional<Dialect
   SceneDesc scene = Reader(read_text_file(file)).read(dialect);
   scene.directory = file.parent_path();
   return scene;
-}
-
-Dialect dialect_from_name(std::string_view name) {
-  if (const std::optional<Dialect> dialect = find_dialect(name)) return *dialect;
-  throw InputError({}, fmt::format("unknown dialect '{}'", name), known_names(name, dialect_names()));
-}
-
-std::string_view dialect_name(Dialect dialect) {
-  for (const auto& [name, known] : dialects)
-    if (known == dialect) return name;
-  throw std::logic_error("a dialect without a name");
 }
 
 }  // namespace etendue

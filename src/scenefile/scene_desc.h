@@ -40,6 +40,7 @@ struct SceneDesc {
   Dialect dialect = Dialect::nori_2012;
   std::string dialect_reason;  ///< Why this dialect, for the log.
   std::filesystem::path directory;
+  std::vector<std::string> warnings;  ///< Complete messages: what was left out of `root`.
 };
 
 }  // namespace etendue

@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-FAMILIES = ["integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "lights"]
+FAMILIES = ["integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "lights", "tests"]
 HEAD = ["parameter", "type", "default", "unit", "meaning"]
 
 

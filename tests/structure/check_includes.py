@@ -19,7 +19,7 @@ import tempfile
 
 # scenefile comes early because the plugins of every family state their parameters through it.
 FOLDERS = ["base", "stats", "scenefile", "sampler", "film", "geometry", "texture", "bsdf", "light", "lightsampler", "scene",
-           "integrator", "render"]
+           "integrator", "render", "noritest"]
 TOPS = ["src", "apps", "tests", "bench"]
 MAX_HEADER_LINES = 150
 XSIMD_HOME = "src/base/simd.h"
@@ -115,7 +115,7 @@ HEADER = "// A thing.\n#pragma once\n"
 PLANTED = [
     ("order: further down", "src/bsdf/a.h", HEADER + '#include "base/vec.h"\n#include "light/b.h"\n', [4]),
     ("order: odd spacing", "src/base/a.cpp", '  #  include  "render/b.h"\n', [1]),
-    ("order: the last folder from the first", "src/base/a.cpp", '#include "render/b.h"\n', [1]),
+    ("order: the last folder from the first", "src/base/a.cpp", '#include "noritest/b.h"\n', [1]),
     ("order: a path not from src/", "src/light/a.cpp", '#include "b.h"\n#include "../base/vec.h"\n', [1, 2]),
     ("order: an unknown folder", "src/utils/a.cpp", "int a;\n", [1]),
     ("order: a file beside the folders", "src/a.cpp", "int a;\n", [1]),

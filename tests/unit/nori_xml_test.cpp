@@ -320,6 +320,90 @@ TEST_F(NoriXml, TellsTheDialectAndWhy) {
   EXPECT_THROW(dialect_from_name("mitsuba"), InputError);
 }
 
+TEST_F(NoriXml, TellsTheDialectByNamesThatOneGenerationHas) {
+  const auto guess = [&](const std::string& inside) {
+    const SceneDesc scene = read("<scene>\n" + inside + "</scene>");
+    EXPECT_THAT(scene.dialect_reason,
+                scene.dialect == Dialect::nori ? HasSubstr("--dialect nori-eth") : HasSubstr("in line 2"));
+    return scene.dialect;
+  };
+  for (const char* inside :
+       {"<mesh type='sphere'/>", "<emitter type='distantdisk'/>", "<integrator type='av'/>",
+        "<integrator type='material'/>", "<emitter type='point'><color name='power' value='1'/></emitter>",
+        "<mesh type='obj'><bsdf type='diffuse'><texture type='uvtexture' name='albedo'/></bsdf></mesh>",
+        "<mesh type='obj'><bsdf type='diffuse'><texture type='checkerboard_color' name='a'/></bsdf></mesh>"})
+    EXPECT_EQ(guess(inside), Dialect::nori_eth) << inside;
+  for (const char* inside :
+       {"<integrator type='mipath'/>", "<mesh type='obj'><luminaire type='area'/></mesh>",
+        "<mesh type='sphere'><luminaire type='area'/></mesh>"})
+    EXPECT_EQ(guess(inside), Dialect::nori_2012) << inside;
+  for (const char* inside :
+       {"", "<shape type='sphere'/>", "<emitter type='point'><color name='intensity' value='1'/></emitter>",
+        "<emitter type='area'/>", "<integrator type='direct_ems'/>", "<medium type='homogeneous'/>",
+        "<bsdf type='av'/>", "<integrator type='path'/>",
+        "<camera type='perspective'><float name='apertureRadius' value='1'/></camera>"})
+    EXPECT_EQ(guess(inside), Dialect::nori) << inside;
+  EXPECT_EQ(guess("<shape type='sphere'/>\n<!-- <luminaire> -->"), Dialect::nori);
+}
+
+TEST_F(NoriXml, AFileOfTestsHasOneDialect) {
+  const SceneDesc test = read(
+      "<test type='ttest'><scene><integrator type='path'/></scene>\n"
+      "<scene><integrator type='mipath'/></scene></test>");
+  EXPECT_EQ(test.dialect, Dialect::nori_2012);
+  EXPECT_EQ(test.dialect_reason,
+            "<integrator type=\"mipath\"> in line 2: only the first generation has that");
+  EXPECT_EQ(read("<test type='ttest'><string name='distances' value='1'/></test>").dialect,
+            Dialect::nori_eth);
+  EXPECT_EQ(read("<test type='ttest'><string name='angles' value='1'/></test>").dialect, Dialect::nori);
+}
+
+TEST_F(NoriXml, LeavesOutWhatHasNoPartInTheImage) {
+  const SceneDesc scene = read(
+      "<scene>\n <evaluator type='variance'><string name='reference' value='a.exr'/></evaluator>"
+      "<camera type='a'/><previewer type='x'/></scene>");
+  ASSERT_EQ(scene.root.children.size(), 1u);
+  EXPECT_EQ(scene.root.children[0].family, "camera");
+  ASSERT_EQ(scene.warnings.size(), 2u);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("s.xml:2:3: <evaluator> is ignored: it has no part in the image"));
+  // A slip stays in, for the loader to refuse with the name that was meant; so does anything it might need.
+  EXPECT_EQ(read("<scene><emiter type='area'/></scene>").root.children.size(), 1u);
+  EXPECT_TRUE(read("<scene><emiter type='area'/></scene>").warnings.empty());
+  EXPECT_EQ(
+      read("<scene><mesh type='a'><evaluator type='b'/></mesh></scene>").root.children[0].children.size(),
+      1u);
+}
+
+TEST_F(NoriXml, ReadsTheLooseWaysOfCourses) {
+  for (const char* before : {"\n", " \t\r\n", "<!-- Cornell box -->\n", "\n\n<!-- a --><!-- b -->\n\n"})
+    EXPECT_EQ(error(std::string(before) + "<?xml version='1.0' encoding='utf-8'?>\n<scene/>"), "") << before;
+  for (const char* numbers : {"1,2,3", "1 2 3", "1, 2, 3", " 1 ,2\n\t3 ", "1,2 3"})
+    EXPECT_EQ(std::get<Colorf>(value("<color name='a' value='" + std::string(numbers) + "'/>")),
+              (Colorf{1, 2, 3}))
+        << numbers;
+  const auto expected = std::get<Transform>(
+      value("<transform name='a'><matrix value='1 2 3 4  5 6 7 9  9 8 1 2  0 0 0 1'/></transform>"));
+  for (const char* numbers :
+       {"1 2 3 4; 5 6 7 9; 9 8 1 2; 0 0 0 1", "1, 2, 3, 4; 5, 6, 7, 9; 9, 8, 1, 2; 0, 0, 0, 1",
+        "1 2 3 4;5 6 7 9;9 8 1 2;0 0 0 1;", "1,2,3,4,5,6,7,9,9,8,1,2,0,0,0,1"})
+    EXPECT_EQ(std::get<Transform>(value("<transform name='a' value='" + std::string(numbers) + "'/>")),
+              expected)
+        << numbers;
+}
+
+TEST_F(NoriXml, ReadsTexturesAndPhaseFunctionsAsChildrenWithNames) {
+  const SceneDesc scene = read(
+      "<scene><mesh type='obj'><bsdf type='diffuse'><texture type='checkerboard_color' name='albedo'>"
+      "<point name='delta' value='0.3,0.3'/></texture></bsdf></mesh>"
+      "<medium type='homogeneous'><phase type='isotropic'/></medium></scene>");
+  const Object& texture = scene.root.children[0].children[0].children[0];
+  EXPECT_EQ(texture.family, "texture");
+  EXPECT_EQ(texture.type, "checkerboard_color");
+  EXPECT_EQ(texture.name, "albedo");
+  EXPECT_EQ(std::get<Vec2<double>>(texture.properties[0].value), (Vec2<double>{0.3, 0.3}));
+  EXPECT_EQ(scene.root.children[1].children[0].family, "phase");
+}
+
 /// The folder of files written by others, or empty.
 fs::path test_data() {
   const char* stated = std::getenv("ETENDUE_TEST_DATA");
@@ -352,6 +436,27 @@ TEST(NoriXmlData, ReadsTheScenesAndTestsOfRealCourses) {
     }
   }
   EXPECT_GT(count, 0);
+}
+
+TEST(NoriXmlData, NoFileIsTakenForAnotherGeneration) {
+  if (test_data().empty()) GTEST_SKIP() << "no test data";
+  int told = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(test_data())) {
+    const std::string folder = entry.path().filename().string();
+    if (!folder.starts_with("nori-")) continue;
+    const bool is_first =
+        folder.find("2012") != std::string::npos || folder.find("acg13") != std::string::npos;
+    const bool is_eth =
+        folder.find("eth") != std::string::npos || folder.find("tuebingen") != std::string::npos;
+    const Dialect expected = is_first ? Dialect::nori_2012 : is_eth ? Dialect::nori_eth : Dialect::nori;
+    for (const fs::path& file : xml_files(entry.path())) {
+      const SceneDesc scene = read_nori_xml(file);
+      if (scene.dialect == Dialect::nori) continue;  // Nothing in it tells.
+      ++told;
+      EXPECT_EQ(scene.dialect, expected) << file << ": " << scene.dialect_reason;
+    }
+  }
+  EXPECT_GT(told, 10);
 }
 
 TEST(NoriXmlData, RefusesBadFilesByName) {

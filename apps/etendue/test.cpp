@@ -1,0 +1,173 @@
+#include "base/error.h"
+#include "commands.h"
+#include "film/temporary_file.h"
+#include "noritest/noritest.h"
+#include "render/thread_limit.h"
+#include "scenefile/dialect.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace etendue::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::vector<std::string> files;
+  std::string json_file, isa, dialect;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  bool is_quiet = false;
+};
+
+struct Counts {
+  int cases = 0, failed = 0, errors = 0, unreadable_files = 0;
+};
+
+std::string number_text(double value, int digits = 6) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
+}
+
+void print_case(const std::string& file, int number, const CaseResult& result) {
+  const std::string subject = result.detail.empty()
+                                  ? fmt::format("{} {}", result.subject, result.type)
+                                  : fmt::format("{} {} {}", result.subject, result.type, result.detail);
+  if (result.is_error) {
+    fmt::print("{} {} {} {}: not run, ERROR\n", file, number, result.kind, subject);
+    std::fflush(stdout);
+    fmt::print(stderr, "error: {}\n", result.problem);
+    return;
+  }
+  const std::string numbers =
+      result.kind == "ttest"
+          ? fmt::format("mean {} reference {}{}", number_text(result.mean), number_text(result.reference),
+                        result.is_reference_estimated ? " (perhaps itself Monte Carlo)" : "")
+          : fmt::format("chi-squared {}", number_text(result.statistic));
+  fmt::print("{} {} {} {}: {}, p {}, {}, {:.2f} s\n", file, number, result.kind, subject, numbers,
+             number_text(result.p_value, 3), result.is_passed ? "ok" : "FAILED", result.seconds);
+  if (!result.problem.empty()) fmt::print("  {}\n", result.problem);
+  std::fflush(stdout);
+}
+
+/// What is NaN is null.
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json to_json(const std::string& file, int number, const CaseResult& result) {
+  Json json;
+  json["file"] = file;
+  json["case"] = number;
+  json["integrator"] = result.type;
+  json["kind"] = result.kind;
+  json["subject"] = result.subject;
+  json["detail"] = result.detail;
+  json["mean"] = json_number(result.mean);
+  json["reference"] = json_number(result.reference);
+  json["is_reference_estimated"] = result.is_reference_estimated;
+  json["statistic"] = json_number(result.statistic);
+  json["p_value"] = json_number(result.p_value);
+  json["passed"] = result.is_passed;
+  json["problem"] = result.problem;
+  json["is_error"] = result.is_error;
+  json["seconds"] = result.seconds;
+  return json;
+}
+
+void run_file(const Options& options, const TestSettings& settings, const std::string& file, Counts& counts,
+              Json& all) {
+  const std::optional<Dialect> dialect =
+      options.dialect.empty() ? std::nullopt : std::optional(dialect_from_name(options.dialect));
+  const SceneDesc test = read_test_file(file, dialect);
+  if (!options.is_quiet) fmt::print("{}: {} ({})\n", file, dialect_name(test.dialect), test.dialect_reason);
+  int number = 0;
+  std::size_t warned = 0;
+  std::vector<std::string> warnings;
+  const auto warn = [&] {
+    std::fflush(stdout);
+    for (; warned < warnings.size(); ++warned)
+      if (!options.is_quiet) fmt::print(stderr, "warning: {}\n", warnings[warned]);
+  };
+  run_test_file(
+      test, settings,
+      [&](const CaseResult& result) {
+        warn();
+        ++counts.cases;
+        counts.errors += result.is_error;
+        counts.failed += !result.is_passed && !result.is_error;
+        ++number;
+        if (!options.is_quiet || !result.is_passed) print_case(file, number, result);
+        all.push_back(to_json(file, number, result));
+      },
+      warnings);
+  warn();
+}
+
+void print_summary(const Options& options, const Counts& counts) {
+  std::string text =
+      fmt::format("{} of {} cases in {} file{} passed", counts.cases - counts.failed - counts.errors,
+                  counts.cases, options.files.size(), options.files.size() == 1 ? "" : "s");
+  if (counts.failed > 0) text += fmt::format(", {} FAILED", counts.failed);
+  if (counts.errors > 0) text += fmt::format(", {} could not be run", counts.errors);
+  if (counts.unreadable_files > 0)
+    text += fmt::format("; {} file{} could not be used", counts.unreadable_files,
+                        counts.unreadable_files == 1 ? "" : "s");
+  fmt::print("{}\n", text);
+}
+
+int run(const Options& options) {
+  if (!options.json_file.empty()) check_destination(options.json_file);
+  const TestSettings settings{options.seed,
+                              options.isa.empty() ? available_isas().back() : isa_from_name(options.isa)};
+  if (!options.dialect.empty()) dialect_from_name(options.dialect);
+  const ThreadLimit thread_limit(options.threads);
+  Counts counts;
+  Json all = Json::array();
+  for (const std::string& file : options.files) {
+    try {
+      run_file(options, settings, file, counts, all);
+    } catch (const InputError& error) {  // The other files are tested all the same.
+      ++counts.unreadable_files;
+      std::fflush(stdout);
+      fmt::print(stderr, "error: {}\n", error.what());
+    }
+  }
+  print_summary(options, counts);
+  if (!options.json_file.empty()) {
+    const std::string text = all.dump(2) + "\n";
+    TemporaryFile out(options.json_file);
+    std::fwrite(text.data(), 1, text.size(), out.stream());
+    out.commit();
+  }
+  if (counts.unreadable_files > 0 || counts.errors > 0) return bad_input;
+  return counts.failed > 0 ? check_failed : done;
+}
+
+}  // namespace
+
+void add_test_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("test", "Run test files of the Nori family (ttest, chi2test): a line for each case");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->files, "Test files")->required();
+  command->add_option("--json", options->json_file, "JSON file with an entry for each case")
+      ->allow_extra_args(false);
+  command->add_option("--seed", options->seed, "Another seed: other random numbers")
+      ->capture_default_str()
+      ->check([](const std::string& text) {  // CLI11 would wrap a negative number around.
+        return text.starts_with('-') ? fmt::format("{} is negative; expected a whole number from 0 on", text)
+                                     : "";
+      });
+  command->add_option("--threads", options->threads, "Threads; 0: all cores")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 4096));
+  command->add_option("--isa", options->isa, "Instruction set: scalar, v2, v3 or v4 [the widest here]");
+  command->add_option("--dialect", options->dialect, "Read the files as nori-2012, nori-eth or nori");
+  command->add_flag("--quiet", options->is_quiet, "Print only cases that fail, and the summary");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace etendue::app

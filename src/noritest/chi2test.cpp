@@ -1,0 +1,217 @@
+// Pearson's chi-squared test of "samples of a BSDF follow its own density", over cells of the whole sphere.
+//
+// The rules are those of Nori's chi2test (W. Jakob): the cells, the number of samples and of directions, the
+// pooling, the allowance of a cell that should be empty, and the level of the whole file with its Sidak
+// correction. Samples of weight 0 are not counted, so the density may integrate to less than 1. The expected
+// counts are integrated more exactly than there, by Gauss and Kronrod's rule instead of Simpson's: narrow
+// lobes need it.
+#include "base/hash.h"
+#include "bsdf/bsdf.h"
+#include "noritest/case_runner.h"
+#include "noritest/random_squares.h"
+#include "stats/chi_squared.h"
+#include "stats/significance.h"
+
+#include <algorithm>
+#include <atomic>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace etendue {
+
+using Type = Parameter::Type;
+
+const Plugin chi2test_plugin{
+    "test",
+    "chi2test",
+    "Chi-squared tests of BSDFs: do their samples follow their density?",
+    {{"resolution", Type::integer, "10", "",
+      "Rows of cells over the sphere; there are twice as many columns"},
+     {"sampleCount", Type::integer, "-1", "", "Samples a direction; negative: 5000 a cell"},
+     {"testCount", Type::integer, "5", "", "Random directions to the viewer for each BSDF"},
+     {"minExpFrequency", Type::integer, "5", "", "Cells with fewer expected samples are pooled"},
+     {"significanceLevel", Type::real, "0.01", "", "Of all cases of the file together"}},
+    {"bsdf", "brdf"}};
+
+namespace {
+
+constexpr double pi_d = std::numbers::pi;
+constexpr double allowance_of_empty_cells = 1e-5;  ///< Of the number of samples.
+
+struct Chi2Rules {
+  int rows, directions;
+  std::int64_t sample_count, tests;
+  double pooling_threshold, level;
+  bool is_first_generation;  ///< Rows even in theta, directions cosine-weighted; else both even in cos theta.
+
+  int columns() const { return 2 * rows; }
+  std::size_t cells() const { return std::size_t(rows) * std::size_t(columns()); }
+  /// cos theta at the lower end of a row.
+  double row_begin(int row) const {
+    return is_first_generation ? -std::cos(pi_d * row / rows) : -1 + 2.0 * row / rows;
+  }
+  std::size_t cell_of(const Vec3f& w) const {
+    const double z = std::clamp(double(w.z), -1.0, 1.0);
+    const double height = is_first_generation ? 1 - std::acos(z) / pi_d : 0.5 * z + 0.5;
+    const double turn = std::atan2(double(w.y), double(w.x)) / (2 * pi_d);
+    const int row = std::clamp(int(std::floor(height * rows)), 0, rows - 1);
+    const int column =
+        std::clamp(int(std::floor((turn < 0 ? turn + 1 : turn) * columns())), 0, columns() - 1);
+    return std::size_t(row) * std::size_t(columns()) + std::size_t(column);
+  }
+};
+
+int positive(const Parameters& parameters, std::string_view name, int most) {
+  const int value = parameters.integer(name);
+  if (value < 1 || value > most)
+    throw InputError(parameters.location(name),
+                     fmt::format("'{}' is {}; it must be from 1 to {}", name, value, most));
+  return value;
+}
+
+Chi2Rules rules_of(const TestRun& run, const Parameters& parameters) {
+  Chi2Rules rules{};
+  rules.rows = positive(parameters, "resolution", 1000);
+  rules.directions = positive(parameters, "testCount", 1000000);
+  rules.sample_count = parameters.integer("sampleCount");
+  if (rules.sample_count < 0) rules.sample_count = 5000 * std::int64_t(rules.cells());
+  if (rules.sample_count == 0)
+    throw InputError(parameters.location("sampleCount"), "'sampleCount' is 0; nothing would be tested");
+  rules.pooling_threshold = parameters.integer("minExpFrequency");
+  rules.level = parameters.real("significanceLevel");
+  if (!(rules.level > 0 && rules.level < 1))
+    throw InputError(parameters.location("significanceLevel"),
+                     fmt::format("'significanceLevel' is {}; it must lie between 0 and 1", rules.level));
+  rules.is_first_generation = run.test.dialect == Dialect::nori_2012;
+  rules.tests = std::int64_t(run.test.root.children.size()) * rules.directions;
+  return rules;
+}
+
+Vec3f random_viewer(const Chi2Rules& rules, const Vec2f& u) {
+  if (rules.is_first_generation) return square_to_cosine_hemisphere(u);
+  const float sin_theta = std::sqrt(std::max(1 - u.x * u.x, 0.0f));
+  return {sin_theta * std::cos(2 * pi * u.y), sin_theta * std::sin(2 * pi * u.y), u.x};
+}
+
+bool is_finite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+struct Observed {
+  std::vector<double> counts;
+  std::int64_t invalid_samples = 0;  ///< With a weight, direction or density that is not a number.
+};
+
+template <class Model>
+Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, std::uint64_t seed) {
+  constexpr std::int64_t samples_a_task = 16384;
+  const RandomSquares u_bsdf(seed);
+  std::atomic<bool> has_dirac{false};
+  tbb::combinable<Observed> parts([&] { return Observed{std::vector<double>(rules.cells()), 0}; });
+  const auto run_task = [&](std::int64_t task) {
+    Observed& part = parts.local();
+    const std::int64_t end = std::min((task + 1) * samples_a_task, rules.sample_count);
+    for (std::int64_t i = task * samples_a_task; i < end; ++i) {
+      const BsdfSample<float> sample = model.sample_(wo, u_bsdf[std::uint32_t(i)]);
+      if (sample.weight == Colorf{0, 0, 0}) continue;
+      if (std::isinf(sample.pdf_solid_angle)) has_dirac = true;
+      const float sum = sample.weight.r + sample.weight.g + sample.weight.b + sample.pdf_solid_angle;
+      if (std::isfinite(sum) && is_finite(sample.wi_local))
+        ++part.counts[rules.cell_of(sample.wi_local)];
+      else
+        ++part.invalid_samples;
+    }
+  };
+  tbb::parallel_for(std::int64_t{0}, (rules.sample_count + samples_a_task - 1) / samples_a_task, run_task);
+  if (has_dirac)
+    throw InputError(
+        "it has a Dirac lobe (mirror reflection or refraction), whose density is infinite: a chi2test cannot "
+        "test it\ntest its mean with a ttest instead");
+  Observed all{std::vector<double>(rules.cells()), 0};
+  parts.combine_each([&](const Observed& part) {
+    for (std::size_t c = 0; c < all.counts.size(); ++c) all.counts[c] += part.counts[c];
+    all.invalid_samples += part.invalid_samples;
+  });
+  return all;
+}
+
+template <class Model>
+std::vector<double> expect(const Model& model, const Vec3f& wo, const Chi2Rules& rules) {
+  // No end of an interval is evaluated, where a horizon would count as above and below.
+  using Rule = boost::math::quadrature::gauss_kronrod<double, 15>;
+  constexpr unsigned most_halvings = 6;
+  constexpr double tolerance = 1e-5;
+  std::vector<double> counts(rules.cells());
+  tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t cell) {
+    const int row = int(cell) / rules.columns(), column = int(cell) % rules.columns();
+    const double width = 2 * pi_d / rules.columns();
+    const auto over_row = [&](double z) {
+      const double sin_theta = std::sqrt(std::max(1 - z * z, 0.0));
+      const auto density = [&](double phi) {
+        const Vec3f wi{float(sin_theta * std::cos(phi)), float(sin_theta * std::sin(phi)), float(z)};
+        return double(model.pdf_solid_angle_(wo, wi));
+      };
+      return Rule::integrate(density, column * width, (column + 1) * width, most_halvings, tolerance);
+    };
+    counts[cell] =
+        double(rules.sample_count) *
+        Rule::integrate(over_row, rules.row_begin(row), rules.row_begin(row + 1), most_halvings, tolerance);
+  });
+  return counts;
+}
+
+void judge(CaseResult& result, const Observed& observed, const std::vector<double>& expected,
+           const Chi2Rules& rules) {
+  const ChiSquaredTest test =
+      chi_squared_test(observed.counts, expected,
+                       {.pooling_threshold = rules.pooling_threshold,
+                        .most_in_empty_cell = allowance_of_empty_cells * double(rules.sample_count)});
+  result.statistic = test.statistic;
+  result.p_value = test.p_value;
+  if (observed.invalid_samples > 0)
+    result.problem =
+        fmt::format("{} of {} samples are not finite", observed.invalid_samples, rules.sample_count);
+  else if (test.wrong_empty_cell >= 0)
+    result.problem = fmt::format("{} samples in a cell where the density is 0",
+                                 observed.counts[std::size_t(test.wrong_empty_cell)]);
+  else if (std::isnan(test.p_value))
+    result.problem = "the density is not finite, negative, or in fewer than two cells";
+  result.is_passed = result.problem.empty() && !is_rejected(result.p_value, rules.level, rules.tests);
+}
+
+}  // namespace
+
+void run_chi2test(TestRun& run) {
+  std::vector<UnreadKey> unread;
+  const Parameters parameters(run.test.root, chi2test_plugin, unread);
+  run.warn(unread);
+  const Chi2Rules rules = rules_of(run, parameters);
+  if (run.test.root.children.empty())
+    throw InputError(run.test.root.location, "this test has nothing to test",
+                     "put <bsdf> elements into a chi2test");
+  std::uint64_t number = 0;
+  for (const Object& bsdf : run.test.root.children)
+    for (int direction = 0; direction < rules.directions; ++direction) {
+      const std::uint64_t seed = hash64(hash64(run.settings.seed) + number++);
+      CaseResult result{.kind = "chi2test",
+                        .subject = "bsdf",
+                        .type = bsdf.type,
+                        .detail = fmt::format("direction {}", direction + 1)};
+      run.run_case(result, [&](CaseResult& measured) {
+        std::vector<UnreadKey> unread_of_bsdf;
+        const Bsdf material = make_bsdf(bsdf, run.test.directory, unread_of_bsdf);
+        if (direction == 0) run.warn(unread_of_bsdf);
+        const Vec3f wo = random_viewer(rules, RandomSquares(hash64(seed))[0]);
+        std::visit(
+            [&](const auto& model) {
+              const auto at_point = model.at(Vec2f{0, 0}, true);
+              judge(measured, observe(at_point, wo, rules, seed), expect(at_point, wo, rules), rules);
+            },
+            material);
+      });
+    }
+}
+
+}  // namespace etendue

@@ -1,0 +1,78 @@
+#include "noritest/scene_luminance.h"
+
+#include "base/hash.h"
+#include "render/kernel.h"
+
+#include <algorithm>
+#include <memory>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+namespace etendue {
+namespace {
+
+/// Samples that one task renders: enough to outweigh its start, few enough to keep several threads busy.
+constexpr std::int64_t samples_a_task = 8192;
+
+/// A single pixel that is as large as the film.
+void cover_film_by_one_pixel(Scene& scene) {
+  Camera& camera = scene.camera;
+  camera.per_px_x = camera.per_px_x * float(camera.width_px);
+  camera.per_px_y = camera.per_px_y * float(camera.height_px);
+  camera.width_px = camera.height_px = 1;
+  scene.filter = PixelFilter::box();
+  scene.sampler = SamplerKind::independent;
+}
+
+SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, const Kernel& kernel,
+                           SampleBlock& block) {
+  SceneLuminance luminances;
+  const std::function<void(const SampleBlock&)> add_samples = [&](const SampleBlock& rendered) {
+    for (std::size_t i = 0; i < std::size_t(rendered.count); ++i)
+      luminances.samples.add(
+          luminance(Colorf{rendered.radiance.r[i], rendered.radiance.g[i], rendered.radiance.b[i]}));
+  };
+  Film film(1, 1);
+  std::vector<InvalidSample> invalid;
+  TileJob job{.scene = &scene,
+              .settings = &settings,
+              .x_begin = 0,
+              .y_begin = 0,
+              .x_end = 1,
+              .y_end = 1,
+              .block = &block,
+              .film = &film,
+              .invalid = &invalid,
+              .on_block = &add_samples};
+  kernel.render_tile(job);
+  luminances.invalid_samples = job.invalid_samples;
+  return luminances;
+}
+
+}  // namespace
+
+SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrator, std::int64_t count,
+                                std::uint64_t seed, Isa isa) {
+  cover_film_by_one_pixel(scene);
+  const Kernel& kernel = kernel_for(isa);
+  std::vector<SceneLuminance> parts(std::size_t((count + samples_a_task - 1) / samples_a_task));
+  tbb::enumerable_thread_specific<std::unique_ptr<SampleBlock>> blocks(
+      [] { return std::make_unique<SampleBlock>(); });
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    RenderSettings settings;
+    settings.integrator = integrator;
+    settings.samples_per_pixel = int(std::min(samples_a_task, count - std::int64_t(part) * samples_a_task));
+    settings.replicates = 1;
+    settings.seed = hash64(hash64(seed) + part);
+    settings.isa = isa;
+    parts[part] = render_task(scene, settings, kernel, *blocks.local());
+  });
+  SceneLuminance all;
+  for (const SceneLuminance& part : parts) {
+    all.samples = combine(all.samples, part.samples);
+    all.invalid_samples += part.invalid_samples;
+  }
+  return all;
+}
+
+}  // namespace etendue
