@@ -30,21 +30,25 @@ class QuantileCells {
   std::size_t cell_of(const Vec3<double>& w) const { return cell_at(depth_of(w), std::atan2(w.y, w.x)); }
 
   /// The integral of `pdf` (1/sr) over each cell by Gauss's rule of 2 x 2 points on parts, which are split
-  /// until the result stays and does not miss where samples are.
+  /// once, then until the result stays and does not miss where samples are, `most_splits` times at most.
   template <class Pdf>
-  std::vector<double> integrals(const Pdf& pdf, int /*steps*/) const {
+  std::vector<double> integrals(const Pdf& pdf, int most_splits) const {
     const auto density = [&](double depth, double turn) {
       const double radius = std::sqrt(depth * (2 - depth));
       return pdf(Vec3<double>{radius * std::cos(turn), radius * std::sin(turn), 1 - depth});
     };
-    std::vector<std::vector<Vec2<double>>> pilot(size());
-    for (const Vec2<double>& point : pilot_) pilot[cell_at(point.x, point.y)].push_back(point);
-    std::vector<double> result;
-    for (std::size_t row = 0; row + 1 < rows_.size(); ++row)
-      for (std::size_t column = 0; column + 1 < columns_.size(); ++column) {
-        const Part cell{rows_[row], columns_[column], rows_[row + 1] - rows_[row],
-                        columns_[column + 1] - columns_[column]};
-        result.push_back(refined(density, cell, gauss(density, cell), pilot[result.size()], most_splits));
+    const std::vector<double> rows = graded(rows_), columns = graded(columns_);
+    const std::size_t stride = columns.size() - 1;
+    std::vector<std::vector<Vec2<double>>> pilot((rows.size() - 1) * stride);
+    for (const Vec2<double>& point : pilot_)
+      pilot[interval_of(rows, point.x) * stride + interval_of(columns, point.y)].push_back(point);
+    std::vector<double> result(size());
+    for (std::size_t row = 0; row + 1 < rows.size(); ++row)
+      for (std::size_t column = 0; column < stride; ++column) {
+        const Part part{rows[row], columns[column], rows[row + 1] - rows[row],
+                        columns[column + 1] - columns[column]};
+        result[cell_at(part.depth + part.depth_size / 2, part.turn + part.turn_size / 2)] +=
+            refined(density, part, gauss(density, part), pilot[row * stride + column], most_splits);
       }
     return result;
   }
@@ -70,6 +74,19 @@ class QuantileCells {
     return result;
   }
 
+  /// More lines, so that no interval is much longer than its neighbours: long ones may hide a lobe at an end.
+  static std::vector<double> graded(std::vector<double> lines) {
+    constexpr double most_growth = 4;
+    for (std::size_t i = 0; i + 2 < lines.size(); ++i)
+      if (const double limit = most_growth * (lines[i + 1] - lines[i]); lines[i + 2] - lines[i + 1] > limit)
+        lines.insert(lines.begin() + std::ptrdiff_t(i) + 2, lines[i + 1] + limit * 0.75);
+    for (std::size_t i = lines.size() - 1; i >= 2; --i)
+      while (lines[i - 1] - lines[i - 2] > most_growth * (lines[i] - lines[i - 1]))
+        lines.insert(lines.begin() + std::ptrdiff_t(i) - 1,
+                     lines[i - 1] - most_growth * 0.75 * (lines[i] - lines[i - 1]));
+    return lines;
+  }
+
   std::size_t cell_at(double depth, double turn) const {
     return interval_of(rows_, depth) * (columns_.size() - 1) + interval_of(columns_, turn);
   }
@@ -91,7 +108,7 @@ class QuantileCells {
 
   template <class Density>
   double refined(const Density& density, const Part& part, double whole, std::span<Vec2<double>> pilot,
-                 int splits_left) const {
+                 int splits_left, int forced_splits = 2) const {
     double quarters[4], sum = 0;
     Part parts[4];
     for (int i = 0; i < 4; ++i) {
@@ -101,7 +118,7 @@ class QuantileCells {
     }
     const bool misses_samples = double(pilot.size()) > 2 * sum * double(pilot_.size()) + 0.5;
     const bool stays = std::abs(sum - whole) < 1e-8 + 1e-4 * std::abs(sum);
-    if (splits_left == 0 || (splits_left <= most_unforced_splits && stays && !misses_samples)) return sum;
+    if (splits_left == 0 || (forced_splits <= 0 && stays && !misses_samples)) return sum;
     sum = 0;
     for (int i = 0; i < 4; ++i) {
       const auto rest = std::partition(pilot.begin(), pilot.end(), [&](const Vec2<double>& point) {
@@ -109,13 +126,12 @@ class QuantileCells {
                ((point.x >= parts[3].depth) == (i / 2 == 1) && (point.y >= parts[3].turn) == (i % 2 == 1));
       });
       const auto inside = std::size_t(rest - pilot.begin());
-      sum += refined(density, parts[i], quarters[i], pilot.first(inside), splits_left - 1);
+      sum += refined(density, parts[i], quarters[i], pilot.first(inside), splits_left - 1, forced_splits - 1);
       pilot = pilot.subspan(inside);
     }
     return sum;
   }
 
-  static constexpr int most_splits = 12, most_unforced_splits = 9;
   std::vector<double> rows_, columns_;
   std::vector<Vec2<double>> pilot_;  ///< Depths and turns.
 };
