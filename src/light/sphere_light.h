@@ -41,7 +41,12 @@ class SphereLights {
     const Vec3<F> ng =
         Frame<F>(-cone.to_center).world_from_local({sin_center * cosine, sin_center * sine, cos_center});
     LightPoint<F> point;
-    point.position = cone.center + ng * cone.radius;
+    // Off the sphere, back along its ray, by some rounding errors of the sum, which are large where the
+    // sphere is: else shadow segments would end inside of it.
+    const F lift = F(4e-7f) * (cone.radius + abs(cone.center.x) + abs(cone.center.y) + abs(cone.center.z));
+    const Vec3<F> along = cone.center + ng * cone.radius - reference;
+    const F height = max(-dot(ng, along), lift + lift);
+    point.position = reference + along * (F(1) - lift / height);
     point.ng = ng;
     point.pdf_area = pdf_area<F>(row, reference, point.position, ng);
     point.piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));

@@ -5,7 +5,7 @@
 // the origin shadows itself; a mesh light's pdf_area is 1 % too large; a sphere's cone is 1 % too wide; the
 // cosine at the receiver is left out; choice.pmf is left out; the BSDF samples of mis have weight 1; the
 // density of mis lacks the probability of the light; Diffuse::eval_ gives albedo; shadow rays end 5 % early;
-// lights shine from behind.
+// lights shine from behind; shadow rays end inside of a huge sphere.
 #include "closed_forms.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
@@ -127,9 +127,10 @@ TEST(ClosedForm, ALightPartlyBelowTheHorizon) {
                   albedo / std::numbers::pi * irradiance, "partly below");
 }
 
-TEST(ClosedForm, SphereLightFarAndNear) {
+TEST(ClosedForm, SphereLightFarNearAndHuge) {
   for (const auto& [center, radius] :
-       {std::pair{Vec3d{-0.8, 1, 2}, 0.9}, std::pair{Vec3d{0.1, 0.05, 0.6}, 0.45}}) {
+       {std::pair{Vec3d{-0.8, 1, 2}, 0.9}, std::pair{Vec3d{0.1, 0.05, 0.6}, 0.45},
+        std::pair{Vec3d{0, 0, 1e5 + 20}, 1e5}}) {
     const double irradiance = sphere_irradiance(center, radius, radiance, {0, 0, 0}, up);
     expect_radiance(floor_scene(sphere_xml(center, radius, light_xml(radiance)), {}, albedo).scene,
                     albedo / std::numbers::pi * irradiance, "sphere of radius " + std::to_string(radius));
