@@ -220,6 +220,12 @@ int run(const Options& options) {
   std::vector<UnreadKey> unread;
   settings.integrator = integrator_for(options, loaded, description.dialect, unread);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
+  if (const std::int32_t unseen = loaded.scene.lights.dirac_count();
+      unseen > 0 && settings.integrator.needs_lights() && !settings.integrator.rules.has_light_samples())
+    loaded.warnings.push_back(
+        fmt::format("{} samples no lights, so {} point, spot or directional light{} will not shine\n"
+                    "take light, mis, path_ems or path_mis",
+                    settings.integrator.name, unseen, unseen == 1 ? "" : "s"));
   for (const UnreadKey& key : unread) loaded.warnings.push_back(key.message);
   warn(options, loaded.warnings);
   if (!options.replay.empty()) {

@@ -91,6 +91,8 @@ class Lights : public LightTables {
   /// Lights at infinity that rays meet: distant disks and environment maps, k = 0 .. infinite_count() - 1.
   std::int32_t infinite_count() const { return std::int32_t(infinite_.size()); }
   std::int32_t infinite_light(std::int32_t k) const { return infinite_[std::size_t(k)]; }  ///< Its id.
+  /// Points, spots and directions, which no ray can meet.
+  std::int32_t dirac_count() const { return count() - area_count_ - infinite_count(); }
 
   /// What a ray that leaves the scene in `direction` (unit, world) meets of the infinite light k, W/(m^2 sr).
   template <class F>
