@@ -6,6 +6,7 @@
 // light; average counts each sample 0.55; choice.pmf is left out; lights shine from behind; a light's
 // shading normals are ignored; results stay in the order of the aimed rays; random numbers depend on the
 // tile, or on what the thread did before.
+#include "film_statistics.h"
 #include "render/kernel.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
@@ -32,25 +33,6 @@ constexpr Method methods[]{{"mis balance", "mis", DirectLight::balance},
                            {"mis power", "mis", DirectLight::power}};
 constexpr int block_px = 16;
 
-/// The mean over a block of pixels, which are independent, as a sample whose standard error and degrees of
-/// freedom (Satterthwaite 1946) Welch's test can take.
-RunningStatistics block_mean(const Film& film, int x_begin, int y_begin, double Color<double>::*channel) {
-  double mean = 0, variance = 0, fourth = 0;
-  int pixels = 0;
-  for (int y = y_begin; y < std::min(y_begin + block_px, film.height()); ++y)
-    for (int x = x_begin; x < std::min(x_begin + block_px, film.width()); ++x) {
-      const PixelStatistics& pixel = film.at(x, y);
-      const double error_sq = pixel.m2.*channel / double(pixel.count - 1) / double(pixel.count);
-      mean += pixel.mean.*channel;
-      variance += error_sq;
-      fourth += error_sq * error_sq / double(pixel.count - 1);
-      ++pixels;
-    }
-  const auto count = std::int64_t(fourth > 0 ? variance * variance / fourth : 2) + 1;
-  variance /= double(pixels) * pixels;
-  return {count, mean / pixels, variance * double(count) * double(count - 1)};
-}
-
 /// \param tests of the whole family, at `level`
 void expect_equal_means(const Scene& scene, int samples_per_pixel, double level, int tests,
                         const std::string& what) {
@@ -70,9 +52,9 @@ void expect_equal_means(const Scene& scene, int samples_per_pixel, double level,
     double largest = 0;
     for (int y = 0; y < films[0].height(); y += block_px)
       for (int x = 0; x < films[0].width(); x += block_px)
-        for (const auto channel : {&Color<double>::r, &Color<double>::g, &Color<double>::b}) {
-          const RunningStatistics a = block_mean(films[m], x, y, channel),
-                                  b = block_mean(films[0], x, y, channel);
+        for (const Channel64 channel : channels64) {
+          const RunningStatistics a = block_mean(films[m], x, y, block_px, channel),
+                                  b = block_mean(films[0], x, y, block_px, channel);
           // Where nothing varies, both see the background, or one light all over.
           const MeanTest test = welch_t_test(a, b);
           largest = std::max(largest, std::abs(test.statistic));
