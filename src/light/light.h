@@ -27,7 +27,7 @@ class Lights : public LightTables {
   /// \param row what the table of its kind returned for it, the latest \return the new light's id
   std::int32_t add(const Colorf& strength, std::string name, LightKind kind, std::int32_t row);
 
-  /// The sphere around all shapes, which lights at infinity lie outside of.
+  /// The sphere around all shapes and media, which lights at infinity lie outside of.
   void set_scene_bounds(const Sphere& bounds) { scene_bounds_ = bounds; }
 
   std::int32_t count() const { return kind_.size(); }

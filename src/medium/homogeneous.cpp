@@ -1,5 +1,6 @@
 #include "medium/homogeneous.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace etendue {
@@ -68,6 +69,18 @@ HomogeneousMedium::HomogeneousMedium(const Colorf& sigma_a, const Colorf& sigma_
   for (std::size_t i = 0; i < rows.size(); ++i)
     medium_from_world_[i] = {float(rows[i].x), float(rows[i].y), float(rows[i].z),
                              float(-dot(rows[i], origin))};
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Vec3<double> corner =
+        transform_point(world_from_medium, {i & 1 ? 1.0 : 0.0, i & 2 ? 1.0 : 0.0, i & 4 ? 1.0 : 0.0});
+    corners_[i] = {float(corner.x), float(corner.y), float(corner.z)};
+  }
+}
+
+Sphere HomogeneousMedium::bounds_with(const Sphere& shapes) const {
+  Sphere bounds = shapes;
+  for (const Vec3f& corner : corners_)
+    bounds.radius = std::max(bounds.radius, length(corner - shapes.center));
+  return bounds;
 }
 
 HomogeneousMedium make_medium(const Object& description, std::vector<UnreadKey>& unread) {

@@ -4,6 +4,7 @@
 #include "base/lane_vec.h"
 #include "base/simd_math.h"
 #include "base/transform.h"
+#include "geometry/geometry.h"
 #include "medium/phase.h"
 #include "scenefile/parameters.h"
 
@@ -18,6 +19,9 @@ class HomogeneousMedium {
                     const Transform& world_from_medium);
 
   HenyeyGreenstein phase;
+
+  /// The sphere about the centre of `shapes` that holds both them and the whole box.
+  Sphere bounds_with(const Sphere& shapes) const;
 
   /// Transmittance between `origin` and `origin` + `along`.
   template <class F>
@@ -91,6 +95,7 @@ class HomogeneousMedium {
   Colorf sigma_s_, sigma_t_;
   bool is_scattering_, is_grey_;
   std::array<std::array<float, 4>, 3> medium_from_world_;
+  std::array<Vec3f, 8> corners_;  ///< World, m.
 };
 
 const std::vector<Plugin>& medium_plugins();

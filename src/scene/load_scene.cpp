@@ -35,7 +35,8 @@ class Loader {
                        "add <camera type=\"perspective\"> with a toWorld transform");
     if (geometry_.count() == 0)
       throw InputError(root.location, "the scene has no shapes", "add <mesh type=\"obj\"> with a filename");
-    lights_.set_scene_bounds(bounding_sphere(geometry_));
+    const Sphere bounds = bounding_sphere(geometry_);
+    lights_.set_scene_bounds(medium_ ? medium_->bounds_with(bounds) : bounds);
     const Clock::time_point start = Clock::now();
     RayCaster rays(geometry_);
     const bool has_textures = std::any_of(materials_.begin(), materials_.end(),

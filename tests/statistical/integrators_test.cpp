@@ -6,6 +6,7 @@
 // light; average counts each sample 0.55; choice.pmf is left out; lights shine from behind; a light's
 // shading normals are ignored; results stay in the order of the aimed rays; random numbers depend on the
 // tile, or on what the thread did before.
+#include "film_statistics.h"
 #include "render/kernel.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
@@ -32,25 +33,6 @@ constexpr Method methods[]{{"mis balance", "mis", DirectLight::balance},
                            {"mis power", "mis", DirectLight::power}};
 constexpr int block_px = 16;
 
-/// The mean over a block of pixels, which are independent, as a sample whose standard error and degrees of
-/// freedom (Satterthwaite 1946) Welch's test can take.
-RunningStatistics block_mean(const Film& film, int x_begin, int y_begin, double Color<double>::*channel) {
-  double mean = 0, variance = 0, fourth = 0;
-  int pixels = 0;
-  for (int y = y_begin; y < std::min(y_begin + block_px, film.height()); ++y)
-    for (int x = x_begin; x < std::min(x_begin + block_px, film.width()); ++x) {
-      const PixelStatistics& pixel = film.at(x, y);
-      const double error_sq = pixel.m2.*channel / double(pixel.count - 1) / double(pixel.count);
-      mean += pixel.mean.*channel;
-      variance += error_sq;
-      fourth += error_sq * error_sq / double(pixel.count - 1);
-      ++pixels;
-    }
-  const auto count = std::int64_t(fourth > 0 ? variance * variance / fourth : 2) + 1;
-  variance /= double(pixels) * pixels;
-  return {count, mean / pixels, variance * double(count) * double(count - 1)};
-}
-
 /// \param tests of the whole family, at `level`
 void expect_equal_means(const Scene& scene, int samples_per_pixel, double level, int tests,
                         const std::string& what) {
@@ -70,9 +52,9 @@ void expect_equal_means(const Scene& scene, int samples_per_pixel, double level,
     double largest = 0;
     for (int y = 0; y < films[0].height(); y += block_px)
       for (int x = 0; x < films[0].width(); x += block_px)
-        for (const auto channel : {&Color<double>::r, &Color<double>::g, &Color<double>::b}) {
-          const RunningStatistics a = block_mean(films[m], x, y, channel),
-                                  b = block_mean(films[0], x, y, channel);
+        for (const Channel64 channel : channels64) {
+          const RunningStatistics a = block_mean(films[m], x, y, block_px, channel),
+                                  b = block_mean(films[0], x, y, block_px, channel);
           // Where nothing varies, both see the background, or one light all over.
           const MeanTest test = welch_t_test(a, b);
           largest = std::max(largest, std::abs(test.statistic));
@@ -174,27 +156,59 @@ TEST(Bits, AreTheSameForAnyNumberOfThreadsAndAgain) {
     }
 }
 
-TEST(Bits, AreTheSameForTilesInAnyOrder) {
-  const LoadedScene loaded = everything_scene(80);
-  const RenderSettings settings = render_settings("average", 16, 4, 5);
-  const Film film = render(loaded.scene, settings).film;
-  Film backwards(80, 80);
-  const auto block = std::make_unique<SampleBlock>();
-  std::vector<InvalidSample> invalid;
-  for (int y = 64; y >= 0; y -= 32)
-    for (int x = 64; x >= 0; x -= 32) {
-      TileJob job{.scene = &loaded.scene,
-                  .settings = &settings,
-                  .x_begin = x,
-                  .y_begin = y,
-                  .x_end = std::min(x + 32, 80),
-                  .y_end = std::min(y + 32, 80),
-                  .block = block.get(),
-                  .film = &backwards,
-                  .invalid = &invalid};
-      kernel_for(settings.isa).render_tile(job);
+/// More than direct light: also a mirror, glass and mist, so that paths end at different vertices.
+LoadedScene bounces_scene(int side_px = 64) {
+  return load_scene_text(
+      camera_xml({0, -6, 2.5}, {0, 0, 0.7}, 45, side_px, "sobol") +
+      rectangle_xml({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, phong_xml(0.4, 0.3, 30)) +
+      rectangle_xml({0, 3, 2}, {4, 0, 0}, {0, 0, 2}, diffuse_xml(0.5)) +
+      rectangle_xml({-2.5, 1, 1.5}, {0.3, 1, 0}, {0, 0, 1}, "<bsdf type=\"mirror\"/>") +
+      rectangle_xml({-2, 0, 3}, {0.7, 0, 0.2}, {0, -0.5, 0}, light_xml(6)) +
+      sphere_xml({1.8, 0.5, 2}, 0.5, light_xml(4) + diffuse_xml(0.1)) +
+      sphere_xml({1, -0.5, 0.7}, 0.6, "<bsdf type=\"dielectric\"/>") +
+      "<medium type=\"homogeneous\"><color name=\"sigmaA\" value=\"0.02,0.05,0.1\"/><color name=\"sigmaS\" "
+      "value=\"0.2\"/><transform name=\"toWorld\"><scale value=\"4,4,2\"/><translate value=\"-2,-2,0\"/>"
+      "</transform></medium>");
+}
+
+TEST(Bits, OfPathsAreTheSameForAnyNumberOfThreads) {
+  for (const int samples : {1, 48, 1100}) {
+    const LoadedScene loaded = bounces_scene(samples > 48 ? 8 : 40);
+    for (const Isa isa : available_isas()) {
+      RenderSettings settings = render_settings("path_mis", samples, samples == 1 ? 1 : 4, 5);
+      settings.isa = isa;
+      settings.threads = 1;
+      const Film once = render(loaded.scene, settings).film;
+      settings.threads = 2;
+      EXPECT_EQ(differing_pixels(once, render(loaded.scene, settings).film), 0)
+          << isa_name(isa) << ", " << samples << " samples, 2 threads";
     }
-  EXPECT_EQ(differing_pixels(film, backwards), 0);
+  }
+}
+
+TEST(Bits, AreTheSameForTilesInAnyOrder) {
+  for (const char* integrator : {"average", "path_mis"}) {
+    const LoadedScene loaded = bounces_scene(80);
+    const RenderSettings settings = render_settings(integrator, 16, 4, 5);
+    const Film film = render(loaded.scene, settings).film;
+    Film backwards(80, 80);
+    const auto block = std::make_unique<SampleBlock>();
+    std::vector<InvalidSample> invalid;
+    for (int y = 64; y >= 0; y -= 32)
+      for (int x = 64; x >= 0; x -= 32) {
+        TileJob job{.scene = &loaded.scene,
+                    .settings = &settings,
+                    .x_begin = x,
+                    .y_begin = y,
+                    .x_end = std::min(x + 32, 80),
+                    .y_end = std::min(y + 32, 80),
+                    .block = block.get(),
+                    .film = &backwards,
+                    .invalid = &invalid};
+        kernel_for(settings.isa).render_tile(job);
+      }
+    EXPECT_EQ(differing_pixels(film, backwards), 0) << integrator;
+  }
 }
 
 TEST(Bits, DependOnTheSeed) {
@@ -209,14 +223,26 @@ double relative_difference_of_means(const Film& a, const Film& b) {
 }
 
 TEST(Bits, DoNotDependOnTheOrderOfShadowRays) {
-  const LoadedScene loaded = everything_scene();
-  for (const Isa isa : available_isas()) {
-    RenderSettings settings = render_settings("light", 256, 4, 6);
-    settings.isa = isa;
-    const Film aimed = render(loaded.scene, settings).film;
-    settings.is_reordering = false;
-    EXPECT_EQ(differing_pixels(aimed, render(loaded.scene, settings).film), 0) << isa_name(isa);
-  }
+  const LoadedScene direct = everything_scene(), bounces = bounces_scene();
+  for (const Isa isa : available_isas())
+    for (const char* integrator : {"light", "path_mis"}) {
+      const Scene& scene = integrator == std::string("light") ? direct.scene : bounces.scene;
+      RenderSettings settings = render_settings(integrator, 64, 4, 6);
+      settings.isa = isa;
+      const Film aimed = render(scene, settings).film;
+      settings.is_reordering = false;
+      EXPECT_EQ(differing_pixels(aimed, render(scene, settings).film), 0)
+          << integrator << ", " << isa_name(isa);
+    }
+}
+
+/// Pixels that differ by more than 1e-4 of their value.
+int visibly_differing_pixels(const Film& a, const Film& b) {
+  int count = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x)
+      count += std::abs(a.at(x, y).mean.g - b.at(x, y).mean.g) > 1e-4 * (1e-3 + b.at(x, y).mean.g);
+  return count;
 }
 
 TEST(Bits, WideKernelsFollowTheScalarOneSampleBySample) {
@@ -229,14 +255,46 @@ TEST(Bits, WideKernelsFollowTheScalarOneSampleBySample) {
     for (const Isa isa : available_isas()) {
       settings.isa = isa;
       const Film wide = render(loaded.scene, settings).film;
-      int different = 0;
-      for (int y = 0; y < wide.height(); ++y)
-        for (int x = 0; x < wide.width(); ++x)
-          different += std::abs(wide.at(x, y).mean.g - scalar.at(x, y).mean.g) >
-                       1e-4 * (1e-3 + scalar.at(x, y).mean.g);
-      EXPECT_LE(different, 20) << "of 4096 pixels: " << method.name << ", " << isa_name(isa);
+      EXPECT_LE(visibly_differing_pixels(wide, scalar), 20)
+          << "of 4096 pixels: " << method.name << ", " << isa_name(isa);
       EXPECT_LT(relative_difference_of_means(wide, scalar), 2e-6) << method.name << ", " << isa_name(isa);
     }
+  }
+}
+
+TEST(Bits, OfPathsWideFollowScalar) {
+  // Each bounce off something curved multiplies rounding by some ten, and each roll of a die (a lobe,
+  // reflection or refraction, roulette) can turn on it: then one path of the pixel's 64 is another one,
+  // equally likely.
+  const LoadedScene loaded = bounces_scene();
+  RenderSettings settings = render_settings("path_mis", 64, 4, 8);
+  settings.isa = Isa::scalar;
+  const Film scalar = render(loaded.scene, settings).film;
+  for (const Isa isa : available_isas()) {
+    settings.isa = isa;
+    const Film wide = render(loaded.scene, settings).film;
+    EXPECT_LE(visibly_differing_pixels(wide, scalar), 400) << "of 4096 pixels: " << isa_name(isa);
+    EXPECT_LT(relative_difference_of_means(wide, scalar), 1e-4) << isa_name(isa);
+  }
+}
+
+TEST(Lanes, AreFullWhereNoPathLeavesAndAlwaysInScalarCode) {
+  const LoadedScene room = load_scene_text(
+      camera_xml({0, -0.9, 0}, {0, 1, 0}, 80, 64, "independent") + mesh_xml("room.obj", diffuse_xml(0.7)) +
+          rectangle_xml({0, 0, 0.98}, {0.3, 0, 0}, {0, -0.3, 0}, light_xml(5)),
+      {{"room.obj", box_obj({0, 0, 0}, 1, true)}});
+  for (const Isa isa : available_isas()) {
+    RenderSettings settings = render_settings("path_mis", 64, 4, 1);
+    settings.isa = isa;
+    const RenderCounts counts = render(room.scene, settings).counts;
+    EXPECT_GE(counts.paths, 4 * counts.camera_rays);
+    if (isa == Isa::scalar)
+      EXPECT_EQ(counts.lane_occupancy(), 1);
+    else
+      EXPECT_GT(counts.lane_occupancy(), 0.9) << isa_name(isa);
+    EXPECT_LE(counts.lane_occupancy(), 1) << isa_name(isa);
+    ::testing::Test::RecordProperty(std::string("lane_occupancy_") + std::string(isa_name(isa)),
+                                    std::to_string(counts.lane_occupancy()));
   }
 }
 

@@ -7,6 +7,7 @@
 // density of mis lacks the probability of the light; Diffuse::eval_ gives albedo; shadow rays end 5 % early;
 // lights shine from behind; shadow rays end inside of a huge sphere.
 #include "closed_forms.h"
+#include "film_statistics.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
 #include "test_scene.h"
@@ -30,14 +31,6 @@ constexpr Method methods[]{{"light", "light", DirectLight::balance},
                            {"mis balance", "mis", DirectLight::balance},
                            {"mis power", "mis", DirectLight::power}};
 
-/// All pixels see one point (up to 1e-5 of the distance): each is one more independent estimate.
-RunningStatistics statistics_of_pixels(const Film& film) {
-  RunningStatistics statistics;
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x) statistics.add(film.at(x, y).mean.g);
-  return statistics;
-}
-
 constexpr int side_px = 32;
 const Vec3d eye{1.5, -2.5, 2};
 
@@ -54,7 +47,8 @@ void expect_radiance(const Scene& scene, double exact, const std::string& what) 
     const RenderResult result =
         render(scene, render_settings(method.integrator, 1024, 4, 7, method.heuristic));
     EXPECT_EQ(result.counts.invalid_samples, 0);
-    const RunningStatistics radiance = statistics_of_pixels(result.film);
+    // All pixels see one point (up to 1e-5 of the distance).
+    const RunningStatistics radiance = statistics_of_pixels(result.film, &Color<double>::g);
     const MeanTest test = t_test(radiance, exact, exact * exact * 1e-12);
     EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
         << what << ", " << method.name << ": " << radiance.mean << " +- " << radiance.standard_error()
