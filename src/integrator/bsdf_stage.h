@@ -50,20 +50,24 @@ template <class F>
     Color<F> throughput = load_lanes<F>(path.throughput, i) * sample.weight;
     if (rules.bsdf_samples > 1) throughput = throughput * F(1 / float(rules.bsdf_samples));
     const F eta = load_lanes<F>(&path.eta[i]) * sample.eta;
-    Mask<F> goes_on = mask_and(vertex.is_there, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
-                               mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
+    const Mask<F> is_number =
+        mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
+                 is_finite_nonnegative(throughput.b), sample.pdf_solid_angle >= F(0), dot(wi, wi) < F(2));
+    const Mask<F> is_lost = mask_and(vertex.is_there, mask_not(is_number));
+    // What is not a number must reach the sum, where it is reported.
+    if (any(is_lost)) {
+      const F nan(std::numeric_limits<float>::quiet_NaN());
+      add_radiance<F>(block, i, is_lost, Color<F>{nan, nan, nan});
+    }
+    Mask<F> goes_on =
+        mask_and(vertex.is_there, is_number, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
+                 mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
     if (rules.is_dirac_only) goes_on = mask_and(goes_on, is_dirac);
     if (vertex_number >= first_roulette_vertex) {
-      const Mask<F> is_number =
-          mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
-                   is_finite_nonnegative(throughput.b));
-      const Mask<F> is_lost = mask_and(goes_on, mask_not(is_number));
-      // What is not a number must reach the sum, where it is reported, and no die decides on it.
-      if (any(is_lost)) add_radiance<F>(block, i, is_lost, throughput);
       const F probability = survival(throughput, eta);
       const F u_roulette = to_unit_float(
           sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex_number)).x);
-      goes_on = mask_and(goes_on, is_number, u_roulette < probability);
+      goes_on = mask_and(goes_on, u_roulette < probability);
       throughput = throughput * (F(1) / probability);
     }
     store_mask<F>(&block.next_ray.is_active[i], goes_on);
