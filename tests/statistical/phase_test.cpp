@@ -1,7 +1,7 @@
 // Phase functions: samples follow their density, which is normalised, and turn by the mean cosine g.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over all its tests), fixed seeds.
-// PHASE_PLANTS
+// Seen to fail when the density has the wrong sign of g.
 #include "medium/phase.h"
 
 #include "sphere_cells.h"
