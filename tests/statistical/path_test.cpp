@@ -255,8 +255,7 @@ TEST(PathGlass, IsInvisibleInAConstantEnvironment) {
 }
 
 TEST(PathGlass, RadianceWithinIsThatOutsideTimesTheIndexSquared) {
-  // From inside a sphere, off its centre: total reflection and many bounces. Roulette must take the square
-  // for what it is, or the way out would be rare and bright: the bound of the error sees it.
+  // From inside a sphere, so near its centre that nothing is totally reflected.
   const double index = 1.6;
   const LoadedScene loaded =
       load_scene_text(camera_xml({0.3, 0.2, 0.1}, {1, 1, 0.2}, 60, 32, "independent") +
