@@ -9,7 +9,7 @@
 // one channel alone; scattering in the medium has a cosine; Henyey and Greenstein's g has the wrong sign;
 // several light or BSDF samples are not divided by their number, or their weights do not count them, on
 // either side; every_light divides by the number of lights; the medium is cut off at the sphere around the
-// shapes.
+// shapes; whitted goes on from every surface.
 #include "film/image_file.h"
 #include "film_statistics.h"
 #include "stats/significance.h"
