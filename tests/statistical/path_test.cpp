@@ -9,7 +9,7 @@
 // one channel alone; scattering in the medium has a cosine; Henyey and Greenstein's g has the wrong sign;
 // several light or BSDF samples are not divided by their number, or their weights do not count them, on
 // either side; every_light divides by the number of lights; the medium is cut off at the sphere around the
-// shapes.
+// shapes; whitted goes on from every surface.
 #include "film/image_file.h"
 #include "film_statistics.h"
 #include "stats/significance.h"
@@ -255,8 +255,7 @@ TEST(PathGlass, IsInvisibleInAConstantEnvironment) {
 }
 
 TEST(PathGlass, RadianceWithinIsThatOutsideTimesTheIndexSquared) {
-  // From inside a sphere, off its centre: total reflection and many bounces. Roulette must take the square
-  // for what it is, or the way out would be rare and bright: the bound of the error sees it.
+  // From inside a sphere, so near its centre that nothing is totally reflected.
   const double index = 1.6;
   const LoadedScene loaded =
       load_scene_text(camera_xml({0.3, 0.2, 0.1}, {1, 1, 0.2}, 60, 32, "independent") +
