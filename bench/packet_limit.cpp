@@ -6,6 +6,8 @@
 #include "generated_scenes.h"
 #include "integrator/vertex.h"
 #include "render/kernel.h"
+#include "scene/load_scene.h"
+#include "scenefile/nori_xml.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -119,7 +121,7 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   settings.isa = isa;
   settings.threads = 1;
   const Kernel& kernel = kernel_for(isa);
-  Film film(width_px, height_px);
+  Film film(scene.camera.width_px, scene.camera.height_px);
   std::vector<InvalidSample> invalid;
   const auto block = std::make_unique<SampleBlock>();
   const auto recording_block = std::make_unique<SampleBlock>();
@@ -129,7 +131,8 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   };
   recording_block->on_vertex = &record;
 
-  constexpr int columns = width_px / tile_px, tiles = columns * (height_px / tile_px);
+  // Whole tiles only: what is left at the right and below counts for nothing here.
+  const int columns = scene.camera.width_px / tile_px, tiles = columns * (scene.camera.height_px / tile_px);
   const double tile_samples = double(tile_px) * tile_px * samples_per_pixel;
   const int wanted = std::clamp(int(most_samples / tile_samples), 8, tiles);
   Measurement sum;
@@ -185,11 +188,12 @@ int main(int argc, char** argv) try {
   bool is_json = false, has_normals = false;
   double most_samples = 25e6;
   std::string integrator_name = "light";
-  std::vector<std::string> isa_names;
+  std::vector<std::string> isa_names, scene_files;
   std::vector<int> grids{65, 700}, sample_counts{64, 1024};
   app.add_flag("--json", is_json, "JSON on standard output");
   app.add_flag("--normals", has_normals, "Meshes with vertex normals");
   app.add_option("--integrator", integrator_name, "As of etendue render")->capture_default_str();
+  app.add_option("--scene", scene_files, "Scene files of your own, instead of the generated ones");
   app.add_option("--grids", grids, "Sizes of the scene: 2 grid^2 triangles and more")->delimiter(',');
   app.add_option("--spp", sample_counts, "Samples a pixel")->delimiter(',');
   app.add_option("--isa", isa_names, "Instruction sets; all that this machine has unless given")
@@ -204,10 +208,7 @@ int main(int argc, char** argv) try {
 
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::FILE* text = is_json ? stderr : stdout;
-  for (const int grid : grids) {
-    const Scene scene = bench::terrain_scene(grid, width_px, height_px, has_normals);
-    const std::string name = fmt::format("terrain, {} triangles{}", scene.geometry.triangle_count(),
-                                         has_normals ? ", vertex normals" : "");
+  const auto measure_scene = [&](const Scene& scene, const std::string& name) {
     fmt::print(text, "\n{}; one thread\n", name);
     for (const Isa isa : isas)
       for (const int samples_per_pixel : sample_counts) {
@@ -245,7 +246,7 @@ int main(int argc, char** argv) try {
                         {"lane_occupancy", m.lane_occupancy},
                         {"stages", stages}});
       }
-    if (!isa_names.empty()) continue;  // The speed-up belongs to the complete run.
+    if (!isa_names.empty()) return;  // The speed-up belongs to the complete run.
     throughput(scene, integrator, 2, 16);
     double ratio = 0;
     constexpr int rounds = 3;
@@ -254,7 +255,14 @@ int main(int argc, char** argv) try {
     fmt::print(text, "  2 threads over 1: {:.2f}\n", ratio);
     for (auto& row : json)
       if (row["scene"] == name) row["speed_up_2_threads"] = ratio;
-  }
+  };
+  for (const std::string& file : scene_files) measure_scene(load_scene(read_nori_xml(file)).scene, file);
+  if (scene_files.empty())
+    for (const int grid : grids) {
+      const Scene scene = bench::terrain_scene(grid, width_px, height_px, has_normals);
+      measure_scene(scene, fmt::format("terrain, {} triangles{}", scene.geometry.triangle_count(),
+                                       has_normals ? ", vertex normals" : ""));
+    }
   if (is_json) fmt::print("{}\n", json.dump(2));
 } catch (const std::exception& error) {
   fmt::print(stderr, "error: {}\n", error.what());

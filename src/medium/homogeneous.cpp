@@ -33,7 +33,7 @@ HenyeyGreenstein make_phase(const Object& description, std::vector<UnreadKey>& u
   if (description.type != hg_plugin.name) throw unknown_plugin(description, phase_plugins());
   const Parameters parameters(description, hg_plugin, unread);
   const double g = parameters.real("g");
-  constexpr double most = 0.999;
+  constexpr double most = 0.99;
   if (!(g >= -most && g <= most))
     throw InputError(parameters.location("g"),
                      fmt::format("'g' is {}; it must be from {} to {}", g, -most, most));

@@ -28,9 +28,11 @@ struct HenyeyGreenstein {
   /// \param wo_local along +z or -z: the local frame of a vertex in a medium is that of its ray
   template <class F>
   BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
-    F cos_onwards = F(1) - F(2) * u_bsdf.x;
-    constexpr float isotropic_enough = 1e-3f;  // The inverse cancels towards g = 0.
-    if (g > isotropic_enough || g < -isotropic_enough) {
+    // The inverse cancels towards g = 0; there its first two terms do.
+    const F even = F(1) - F(2) * u_bsdf.x;
+    F cos_onwards = even + F(1.5f * g) * (F(1) - even * even);
+    constexpr float small = 1e-3f;
+    if (g > small || g < -small) {
       const F ratio = F(1 - g * g) / (F(1 + g) - F(2 * g) * u_bsdf.x);
       cos_onwards = min(max((F(1 + g * g) - ratio * ratio) * F(0.5f / g), F(-1)), F(1));
     }

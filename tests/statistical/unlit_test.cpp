@@ -3,8 +3,8 @@
 // False-alarm rate of this file: 1e-5 (Sidak over its t-tests), fixed seeds; the rest is exact up to
 // rounding. Seen to fail when: normals are geometric; av weighs by the cosine, and ao does not; the length of
 // av is not kept, or is twice as long; a miss of av's camera is black; the hemisphere is turned to the
-// camera; the factor of simple is 1 / (4 pi), or its shadow ray goes on behind the light; material exchanges
-// its directions.
+// camera; the factor of simple is 1 / (4 pi), or its shadow ray goes on behind the light.
+
 #include "integrator/unlit.h"
 
 #include "stats/significance.h"

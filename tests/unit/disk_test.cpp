@@ -1,7 +1,4 @@
 // Disks: where rays meet them, from every packet width; surface coordinates of spheres and disks.
-//
-// Seen to fail when: the edge is a square (|x|, |y| <= 1); the front of a mirrored disk is its cross product;
-// x and y of a hit are swapped; u of a sphere is 1/2 + atan2 / (2 pi).
 #include "geometry/bounds.h"
 #include "geometry/raycast.h"
 #include "geometry/shapes.h"

@@ -1,9 +1,5 @@
 // What integrators' names and keys mean in each dialect: the tables of docs/scene_format.md hold for the
 // code.
-//
-// Seen to fail when: `direct` of nori-eth is BSDF sampling; `mipath` is path_ems; the page says that
-// nori-2012's direct is the sum over all lights; the page's alias `direct_ems` names `mis`; the heuristic is
-// not read; emitterSamples counts for samplingMethod brdf; an unknown samplingMethod is taken for mis.
 #include "integrator/integrator.h"
 
 #include "scenefile/dialect.h"
