@@ -2,6 +2,7 @@
 
 #include "geometry/obj_reader.h"
 #include "geometry/ply_reader.h"
+#include "geometry/repeated_triangles.h"
 #include "geometry/shapes.h"
 #include "scenefile/existing_file.h"
 
@@ -120,7 +121,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const bool is_obj = object.type == obj_plugin.name;
     const Parameters parameters(object, is_obj ? obj_plugin : ply_plugin, unread);
     const std::filesystem::path file = existing_file(parameters, "filename", directory, "a mesh file");
-    const Mesh mesh = (is_obj ? read_obj : read_ply)(file, world_from_object(parameters));
+    Mesh mesh = (is_obj ? read_obj : read_ply)(file, world_from_object(parameters));
     const std::string name = label(object, file.stem().string());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(
@@ -128,6 +129,11 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
                                ? fmt::format("1 triangle of '{}' has no area and is left out", name)
                                : fmt::format("{} triangles of '{}' have no area and are left out",
                                              mesh.dropped_triangles, name)));
+    if (const std::size_t repeated = radiance ? remove_repeated_triangles(mesh) : 0; repeated > 0)
+      warnings.push_back(format_message(
+          object.location,
+          fmt::format("{} triangle{} of the light '{}' {} there more than once; one of each shines", repeated,
+                      repeated == 1 ? "" : "s", name, repeated == 1 ? "is" : "are")));
     const std::int32_t id = geometry.add_mesh(mesh, ids);
     if (radiance) lights.add(*radiance, name, LightKind::mesh, lights.meshes.add(geometry, id));
   } else if (object.type == sphere_plugin.name) {
