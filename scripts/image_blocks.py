@@ -1,0 +1,195 @@
+"""Do two noisy pictures of one scene agree? A z-test of block means, the noises of both estimated.
+
+Blocks, not pixels: Nori splats a sample into all pixels within 2 px, so that neighbouring pixels share samples; Etendue
+draws each pixel's samples from the pixel filter, so that its pixels are independent. The expectation is the same but
+for two things at edges: Nori reads its filter from a table of 32 steps, and divides each pixel by its own sum of
+weights. A mean of 16 x 16 pixels sees next to nothing of them. The outermost 2 px are left out: Nori has no samples
+beyond the picture, so there its filter is cut off.
+
+The noise of the mean over a block of n pixels, N samples a pixel:
+- Ours: the sum of the pixels' squared standard errors / n^2.
+- The reference's: a splatted sample spreads a total weight of 1 (to 1.4 %, the ripple of the pixels' grid) over the
+  pixels around it, so a block's mean is that of all samples in it, whose positions are uniform in their pixels: its
+  variance is the sum over pixels of Var_box / (N n^2), with Var_box of one sample somewhere in the pixel. (Samples at the
+  block's rim count in part, which can only make it smaller.) We know Var_gauss, of one sample under the pixel filter:
+  our squared standard error times our number of samples, which must be independent ones for that. The Gaussian is
+  wider than the box, so Var_gauss also holds how the picture itself changes within a pixel or so: where that is
+  nothing the two are equal, and elsewhere Var_gauss is the larger, so that the test loses power and gains no alarms.
+- From the reference itself, as a check of that: in each block the means of 4 x 4 pixels of the difference, less a plane.
+  What is left has 13 degrees of freedom, too few to judge single blocks at the level needed. So only its median ratio
+  to what the estimates above predict is given, as `noise_ratio`, where the prediction knows that our noise is white and
+  the reference's correlated by Nori's filter. About 1 where noise is due to light; below 1 where it is due to edges.
+- That median is above 1 where the reference was sampled in another way than ours (a sphere light over its whole surface,
+  say). From SAMPLED_OTHERWISE on, the reference's noise is therefore what its own scatter says, in the block or in the
+  3 x 3 blocks around it, where that is more.
+- Where an edge's blur just reaches a pixel, perhaps none of our N samples found it, and our standard error is 0. One more
+  sample could have: so the range of the picture over 5 x 5 pixels / N is added to each pixel's standard error
+  (squared); next to nothing but there.
+- Nori sums in single precision: ROUNDING, relative to the brightest channel, is added.
+
+pixels x N samples unless single samples dominate them: light that few samples find.
+"""
+import math
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+
+BLOCK = 16
+SUB_BLOCK = 4
+RIM_PX = 2
+ROUNDING = 2e-5
+SAMPLED_OTHERWISE = 1.25
+MEDIAN_CHI2_13 = 12.3398  # of the chi-squared distribution with 13 degrees of freedom
+
+
+@dataclass
+class Comparison:
+    blocks: int  # times channels
+    max_z: float  # of a block
+    worst_block_px: tuple  # x, y of its corner
+    limit_z: float  # what max_z and global_z may be
+    expected_max_z: float  # the median of max_z where the pictures agree
+    rms_z: float
+    global_z: float  # of the channel whose whole picture disagrees most
+    global_difference: float  # of that channel, relative
+    noise_ratio: float
+    p_value: float  # of max_z and global_z together, Sidak
+    z_map: np.ndarray  # blocks down x across x 3
+
+
+def p_two_sided(z):
+    return math.erfc(abs(z) / math.sqrt(2))
+
+
+def z_two_sided(p):
+    return -NormalDist().inv_cdf(p / 2)
+
+
+def sidak(p, count):
+    """Level of the least of `count` p-values."""
+    return -math.expm1(count * math.log1p(-p)) if p < 1 else 1.0
+
+
+def sidak_each(p, count):
+    """The inverse: the level of each one of `count` for a level p of all."""
+    return -math.expm1(math.log1p(-p) / count)
+
+
+def block_sums(pixels, size):
+    rows, columns = (np.arange(0, n, size) for n in pixels.shape[:2])
+    return np.add.reduceat(np.add.reduceat(pixels, rows, axis=0), columns, axis=1)
+
+
+def plane_remover():
+    """16 x 16: takes a plane away from 4 x 4 values."""
+    side = BLOCK // SUB_BLOCK
+    y, x = np.mgrid[0:side, 0:side]
+    plane = np.stack([np.ones(side * side), x.ravel(), y.ravel()], axis=1)
+    return np.eye(side * side) - plane @ np.linalg.inv(plane.T @ plane) @ plane.T
+
+
+def scatter_factor(lag_correlation):
+    """Expected mean square of sub-block means less a plane, in units of the block mean's variance, for noise with the
+    given correlation (up to a factor) over 0, 1, 2 ... px along each axis."""
+    lags = np.abs(np.arange(BLOCK)[:, None] - np.arange(BLOCK)[None, :])
+    pixels = np.concatenate([lag_correlation, np.zeros(BLOCK)])[lags]
+    average = np.kron(np.eye(BLOCK // SUB_BLOCK), np.full((1, SUB_BLOCK), 1 / SUB_BLOCK))
+    line = average @ pixels @ average.T
+    square = np.kron(line, line)
+    return np.trace(plane_remover() @ square) / 13 / square.mean()
+
+
+def nori_lag_correlation():
+    """Of the pixels of white noise that was splatted with Nori's Gaussian (radius 2 px, standard deviation 0.5 px)."""
+    x = np.linspace(-8, 8, 16001)
+    g = np.where(np.abs(x) < 2, np.exp(-2 * x * x) - math.exp(-8), 0)
+    return np.array([np.sum(g * np.roll(g, 1000 * lag)) for lag in range(5)])
+
+
+FACTOR_WHITE = scatter_factor(np.array([1.0]))
+FACTOR_NORI = scatter_factor(nori_lag_correlation())
+
+
+def sub_block_scatter(difference):
+    """Mean square (13 degrees of freedom) for each whole block and channel."""
+    h, w = (n // BLOCK for n in difference.shape[:2])
+    side = BLOCK // SUB_BLOCK
+    means = difference[:h * BLOCK, :w * BLOCK].reshape(h, side, SUB_BLOCK, w, side, SUB_BLOCK, 3).mean(axis=(2, 5))
+    flat = means.transpose(0, 2, 4, 1, 3)
+    return np.sum((flat.reshape(h, w, 3, side * side) @ plane_remover()) ** 2, axis=3) / 13
+
+
+def local_range(pixels):
+    """Largest minus least over 5 x 5 pixels."""
+    padded = np.pad(pixels, ((2, 2), (2, 2), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (5, 5), axis=(0, 1))
+    return windows.max(axis=(3, 4)) - windows.min(axis=(3, 4))
+
+
+def smoothed(blocks):
+    """Means over 3 x 3 blocks."""
+    padded = np.pad(blocks, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    return np.lib.stride_tricks.sliding_window_view(padded, (3, 3), axis=(0, 1)).mean(axis=(3, 4))
+
+
+def z_of(difference, variance):
+    """0 where both agree to the bit, infinite where they must and do not."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(difference == 0, 0.0, difference / np.sqrt(variance))
+
+
+def compare(ours, stderr, spp, reference, variance_share, level, factor=FACTOR_NORI, least_brightness=0.0):
+    """`spp`: our samples a pixel. `variance_share`: the variance of a pixel of the reference in units of ours, that is,
+    spp / its samples. `level`: how often pictures that agree may be told to disagree. `factor`: scatter_factor of the
+    reference's noise. `least_brightness`: blocks in which we are darker are left out, of the whole picture too."""
+    inner = (slice(RIM_PX, -RIM_PX), slice(RIM_PX, -RIM_PX))
+    ours, stderr, reference = (a[inner].astype(np.float64) for a in (ours, stderr, reference))
+    counts = block_sums(np.ones_like(ours), BLOCK)
+    brightness = block_sums(np.abs(reference).max(axis=2, keepdims=True), BLOCK) / counts
+    rounding = (ROUNDING * brightness) ** 2
+    ours_variance = block_sums(stderr ** 2 + (local_range(ours) / spp) ** 2, BLOCK) / counts ** 2
+    reference_variance = variance_share * ours_variance
+
+    scatter = sub_block_scatter(ours - reference)
+    h, w = scatter.shape[:2]
+    predicted = FACTOR_WHITE * ours_variance[:h, :w] + factor * reference_variance[:h, :w]
+    is_noisy = predicted > 100 * rounding[:h, :w]
+    ratio = np.median(scatter[is_noisy] / predicted[is_noisy]) / (MEDIAN_CHI2_13 / 13) if is_noisy.any() else math.nan
+    if ratio > SAMPLED_OTHERWISE:
+        own = np.maximum(scatter - FACTOR_WHITE * ours_variance[:h, :w], 0) / factor
+        own = np.pad(np.maximum(own, smoothed(own)),
+                     [(0, n - m) for n, m in zip(counts.shape, own.shape)], mode="edge")
+        reference_variance = np.maximum(reference_variance, own)
+
+    total = ours_variance + reference_variance + rounding
+    is_compared = block_sums(ours.max(axis=2, keepdims=True), BLOCK) / counts >= least_brightness
+    difference = block_sums(ours - reference, BLOCK) / counts
+    z = np.where(is_compared, z_of(difference, total), 0)
+    share = np.where(is_compared, counts, 0)
+    share = share / share.sum(axis=(0, 1))
+    whole = np.sum(share * difference, axis=(0, 1))
+    whole_reference = np.sum(share * block_sums(reference, BLOCK) / counts, axis=(0, 1))
+    whole_variance = np.sum(share ** 2 * (total - rounding), axis=(0, 1)) + (ROUNDING * whole_reference.max()) ** 2
+    whole_z = z_of(whole, whole_variance)
+    channel = int(np.argmax(np.abs(whole_z)))
+
+    count = z.size + whole_z.size
+    worst = np.unravel_index(np.argmax(np.abs(z)), z.shape)
+    top = max(float(np.abs(z).max()), float(np.abs(whole_z).max()))
+    return Comparison(
+        blocks=z.size, max_z=float(np.abs(z).max()),
+        worst_block_px=(int(worst[1]) * BLOCK + RIM_PX, int(worst[0]) * BLOCK + RIM_PX),
+        limit_z=z_two_sided(sidak_each(level, count)), expected_max_z=z_two_sided(sidak_each(0.5, z.size)),
+        rms_z=float(np.sqrt(np.mean(z[total > 0] ** 2))), global_z=float(whole_z[channel]),
+        global_difference=float(whole[channel] / whole_reference[channel]) if whole_reference[channel] else 0.0,
+        noise_ratio=float(ratio), p_value=sidak(p_two_sided(top), count), z_map=z)
+
+
+def is_right_way_round(ours, variance, reference):
+    """Is no mirror image of the reference much more like our picture than the reference itself? `variance`: of a pixel of
+    the difference. A picture that is its own mirror image is the right way round."""
+    difference = [ours - m for m in (reference, reference[:, ::-1], reference[::-1], reference[::-1, ::-1])]
+    noise = block_sums(variance, BLOCK) + variance.mean() * BLOCK * BLOCK / 100
+    upright, *mirrored = (float(np.mean(block_sums(d, BLOCK) ** 2 / noise)) for d in difference)
+    return all(upright < 1.2 * m for m in mirrored)
