@@ -38,7 +38,7 @@ FALSE_ALARMS = 1e-4  # of all images of a run together
 FIGURE_WIDTH = 288
 FIGURE_Z = 5.0
 # Of scenes without a reference: what else must give the same picture.
-PARTNERS = {"path": "path_mis", "path_ems": "path_mis", "path_mis": "path_mats", "mipath": "path_mats",
+PARTNERS = {"path": "path_mis", "path_ems": "path_mis", "path_mis": "path_ems", "mipath": "path_ems",
             "path_mats": "path_mis", "light": "mis", "mis": "direct"}
 
 
@@ -49,6 +49,8 @@ class Explanation:
     why: str
     altered: tuple = ()  # (old text of the scene, new text) ...: a copy so changed agrees
     least_brightness: float = 0.0  # blocks that are brighter agree
+    rim_of: float = None  # blocks agree but for those with pixels on both sides of this radiance
+    has_twins: bool = False  # a copy whose meshes have each triangle once agrees
 
 
 EXPLANATIONS = [
@@ -63,11 +65,21 @@ EXPLANATIONS = [
                 "the radiance the scene agrees.",
                 altered=(('value="20, 80, 30"', 'value="19.93, 79.72, 29.895"'),
                          ('value="20, 20, 200"', 'value="19.93, 19.93, 199.3"'))),
+    Explanation("nori-eth-scenes/pa3/veach_mi/veach_mats.xml",
+                "The lights are spheres of 768 triangles with vertex normals. Nori asks the interpolated normal whether "
+                "a light is seen from its front, so that a thin rim of them is black: 0.15 % of their disks, by an "
+                "integral over the mesh. Blocks without a rim agree.",
+                rim_of=1.2),
     Explanation("nori-zaragoza-scenes/assignment-2/cbox/cbox_ems.xml",
                 "Where light arrives at a grazing angle, within 2 cm of the height of the lamp, the reference is up to 18 % "
                 "darker. The reference of Nori's own course for the same box (cbox-distributed) is not, and agrees with ours "
-                "there too. Blocks in which radiance is above 0.02 (the picture's mean is 0.33) agree.",
-                least_brightness=0.02),
+                "there too. Blocks in which radiance is above 0.05 (the picture's mean is 0.33) agree.",
+                least_brightness=0.05),
+    Explanation("nori-acg13-phong/phong-path.xml",
+                "sphere.obj, of which both lights are made, has each of its 4900 triangles twice. Light samples find both, "
+                "rays that meet the light by chance one of them: light samples are twice as bright. With each triangle "
+                "once the integrators agree.",
+                has_twins=True),
 ]
 
 
@@ -122,7 +134,7 @@ def reference_of(data, scene):
 
 def check_tests(program, data, file, folder):
     row = Row(str(file), dialect_of(file))
-    least, passed, total, problems = 1.0, 0, 0, []
+    least, total, problems, failed_seeds = 1.0, 0, [], 0
     for seed in SEEDS:
         report = folder / "tests.json"
         report.unlink(missing_ok=True)
@@ -133,11 +145,13 @@ def check_tests(program, data, file, folder):
             return row
         cases = json.loads(report.read_text())
         total += len(cases)
-        passed += sum(case["passed"] for case in cases)
+        failed_seeds += any(not case["passed"] for case in cases)
         problems += [f"seed {seed}, case {case['case']}" for case in cases if not case["passed"]]
         least = min([least] + [case["p_value"] for case in cases if case["p_value"] is not None])
-    row.is_good = passed == total and total > 0
-    row.result = "passes" if row.is_good else "FAILS: " + "; ".join(problems)
+    # The files judge at a level of 1 %, so that one seed in a hundred fails where nothing is wrong; two of three fail
+    # in one file of 3000.
+    row.is_good = failed_seeds <= 1 and total > 0
+    row.result = "passes" if not problems else f"{'passes' if row.is_good else 'FAILS'} but for {'; '.join(problems)}"
     row.figures = f"{total // len(SEEDS)} cases x {len(SEEDS)} seeds, least p {least:.2g}"
     return row
 
@@ -213,14 +227,24 @@ def check_scene(program, data, scene, folder, arguments, level):
                            is_reused=arguments.reuse)
                     explained, explained_stderr = read_exr(path)
                 after = compare(explained, explained_stderr, spp, other, share, level,
-                                least_brightness=explanation.least_brightness)
+                                least_brightness=explanation.least_brightness, rim_of=explanation.rim_of)
         elif partner:
             other_path = folder / f"{stem}.{partner}.exr"
             render(program, data, scene, other_path, spp, dialect, partner, seed=1, is_reused=arguments.reuse)
             other, other_stderr = read_exr(other_path)
             both = np.sqrt(stderr ** 2 + other_stderr ** 2)
-            explanation, is_upright = None, True
+            is_upright = True
             found = compare(ours, both, spp, other, 0.0, level, FACTOR_WHITE)
+            explanation = next((e for e in EXPLANATIONS if row.file.startswith(e.scene)), None)
+            if explanation and not is_agreed(found):
+                row.why = explanation.why
+                copy = altered_copy(data / scene, explanation, folder)
+                pair = []
+                for seed, name in enumerate((stats["integrator"], partner)):
+                    path = folder / f"{stem}.altered.{name}.exr"
+                    render(program, data, copy, path, spp, dialect, name, seed, arguments.reuse)
+                    pair += read_exr(path)
+                after = compare(pair[0], np.sqrt(pair[1] ** 2 + pair[3] ** 2), spp, pair[2], 0.0, level, FACTOR_WHITE)
             against = f"`{partner}`"
         else:
             row.result, row.is_good = "renders; nothing to compare with", True
@@ -248,9 +272,25 @@ def is_agreed(found):
 
 
 def figures_of(found):
-    return (f"largest |z| {found.max_z:.2f} (expected {found.expected_max_z:.1f}, limit {found.limit_z:.1f}), "
+    return (f"max abs z {found.max_z:.2f} (expected {found.expected_max_z:.1f}, limit {found.limit_z:.1f}), "
             f"rms z {found.rms_z:.2f}, whole picture {100 * found.global_difference:+.3f} % (z {found.global_z:+.1f}), "
             f"noise ratio {found.noise_ratio:.2f}, p {found.p_value:.2g}")
+
+
+def without_twins(obj):
+    """An OBJ file less the faces whose corners are where those of an earlier face are."""
+    vertices, known, lines = [], set(), []
+    for line in obj.splitlines():
+        words = line.split()
+        if words[:1] == ["v"]:
+            vertices.append(tuple(words[1:4]))
+        if words[:1] == ["f"]:
+            face = frozenset(vertices[int(corner.split("/")[0]) - 1] for corner in words[1:])
+            if face in known:
+                continue
+            known.add(face)
+        lines.append(line)
+    return "\n".join(lines) + "\n"
 
 
 def altered_copy(path, explanation, folder):
@@ -260,7 +300,10 @@ def altered_copy(path, explanation, folder):
         if old not in text:
             raise RuntimeError(f"has no {old}, which its explanation changes")
         text = text.replace(old, new)
-    text = re.sub(r'(name="filename" value=")', lambda m: f"{m[1]}{path.parent.resolve()}/", text)
+    meshes = folder.resolve() if explanation.has_twins else path.parent.resolve()
+    for mesh in set(re.findall(r'name="filename" value="([^"]*[.]obj)"', text)) if explanation.has_twins else ():
+        (meshes / mesh).write_text(without_twins((path.parent / mesh).read_text()))
+    text = re.sub(r'(name="filename" value=")', lambda m: f"{m[1]}{meshes}/", text)
     copy = (folder / f"altered_{path.name}").resolve()
     copy.write_text(text)
     return copy
@@ -314,8 +357,8 @@ nothing, and its course was named on the command line.
 ## Scenes
 
 Means of 16 x 16 pixels are compared with the reference image, channel by channel, and the whole picture too; both
-noises are estimated, and the limit of |z| is such that one run in {runs} would tell of a disagreement where there is none
-(`scripts/image_blocks.py` says how and why). "Expected": the median of the largest |z| of as many blocks. "rms z" is 1
+noises are estimated, and the limit of abs z is such that one run in {runs} would tell of a disagreement where there is none
+(`scripts/image_blocks.py` says how and why). "Expected": the median of the largest abs z of as many blocks. "rms z" is 1
 where the noise is well estimated, below where edges make the estimate too large. "Noise ratio" is the reference's noise,
 by its own scatter, in units of what our samples predict for its number of samples; far above 1 it was sampled in another
 way than ours. Where there is no reference, the same scene by another integrator that must agree stands in.
@@ -331,7 +374,7 @@ way than ours. Where there is no reference, the same scene by another integrator
 
 ## Pictures
 
-Ours, and the map of z: white at 0, red where ours is brighter, blue where it is darker; full colour at |z| = 5.
+Ours, and the map of z: white at 0, red where ours is brighter, blue where it is darker; full colour at 5.
 
 {figures}
 """

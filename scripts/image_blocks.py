@@ -19,9 +19,12 @@ The noise of the mean over a block of n pixels, N samples a pixel:
   What is left has 13 degrees of freedom, too few to judge single blocks at the level needed. So only its median ratio
   to what the estimates above predict is given, as `noise_ratio`, where the prediction knows that our noise is white and
   the reference's correlated by Nori's filter. About 1 where noise is due to light; below 1 where it is due to edges.
-- That median is above 1 where the reference was sampled in another way than ours (a sphere light over its whole surface,
-  say). From SAMPLED_OTHERWISE on, the reference's noise is therefore what its own scatter says, in the block or in the
-  3 x 3 blocks around it, where that is more.
+- There are two cases in which our samples do not tell the reference's noise. It may have been sampled in another way (a
+  sphere light over its whole surface, say): then the median above is beyond SAMPLED_OTHERWISE. Or few samples find the
+  light, and ours are those that did not: then a few pixels make up most of the block's difference, which is when
+  (sum d^2)^2 / sum d^4 is below FEW_PIXELS, where normal noise would have 85. In these cases, and only there, since it
+  takes what is really different for noise too, the scatter of the reference is taken instead where it is more, that of
+  the block or of the 3 x 3 blocks around it.
 - Where an edge's blur just reaches a pixel, perhaps none of our N samples found it, and our standard error is 0. One more
   sample could have: so the range of the picture over 5 x 5 pixels / N is added to each pixel's standard error
   (squared); next to nothing but there.
@@ -40,6 +43,7 @@ SUB_BLOCK = 4
 RIM_PX = 2
 ROUNDING = 2e-5
 SAMPLED_OTHERWISE = 1.25
+FEW_PIXELS = 25
 MEDIAN_CHI2_13 = 12.3398  # of the chi-squared distribution with 13 degrees of freedom
 
 
@@ -139,10 +143,12 @@ def z_of(difference, variance):
         return np.where(difference == 0, 0.0, difference / np.sqrt(variance))
 
 
-def compare(ours, stderr, spp, reference, variance_share, level, factor=FACTOR_NORI, least_brightness=0.0):
+def compare(ours, stderr, spp, reference, variance_share, level, factor=FACTOR_NORI, least_brightness=0.0,
+            rim_of=None):
     """`spp`: our samples a pixel. `variance_share`: the variance of a pixel of the reference in units of ours, that is,
     spp / its samples. `level`: how often pictures that agree may be told to disagree. `factor`: scatter_factor of the
-    reference's noise. `least_brightness`: blocks in which we are darker are left out, of the whole picture too."""
+    reference's noise, where `variance_share` is 0: of ours, which then holds both. `least_brightness`: blocks in which we are darker are left out, of the whole picture too; so are
+    those with pixels on both sides of the radiance `rim_of`."""
     inner = (slice(RIM_PX, -RIM_PX), slice(RIM_PX, -RIM_PX))
     ours, stderr, reference = (a[inner].astype(np.float64) for a in (ours, stderr, reference))
     counts = block_sums(np.ones_like(ours), BLOCK)
@@ -156,14 +162,18 @@ def compare(ours, stderr, spp, reference, variance_share, level, factor=FACTOR_N
     predicted = FACTOR_WHITE * ours_variance[:h, :w] + factor * reference_variance[:h, :w]
     is_noisy = predicted > 100 * rounding[:h, :w]
     ratio = np.median(scatter[is_noisy] / predicted[is_noisy]) / (MEDIAN_CHI2_13 / 13) if is_noisy.any() else math.nan
-    if ratio > SAMPLED_OTHERWISE:
-        own = np.maximum(scatter - FACTOR_WHITE * ours_variance[:h, :w], 0) / factor
-        own = np.pad(np.maximum(own, smoothed(own)),
-                     [(0, n - m) for n, m in zip(counts.shape, own.shape)], mode="edge")
-        reference_variance = np.maximum(reference_variance, own)
+    squares = block_sums((ours - reference) ** 2, BLOCK)
+    is_few = squares ** 2 < FEW_PIXELS * block_sums((ours - reference) ** 4, BLOCK)
+    is_untold = is_few | bool(ratio > SAMPLED_OTHERWISE)
+    own = np.maximum(scatter - FACTOR_WHITE * ours_variance[:h, :w], 0) / factor
+    own = np.pad(np.maximum(own, smoothed(own)), [(0, n - m) for n, m in zip(counts.shape, own.shape)], mode="edge")
+    reference_variance = np.where(is_untold, np.maximum(reference_variance, own), reference_variance)
 
     total = ours_variance + reference_variance + rounding
     is_compared = block_sums(ours.max(axis=2, keepdims=True), BLOCK) / counts >= least_brightness
+    if rim_of is not None:
+        share_above = block_sums((ours.max(axis=2, keepdims=True) >= rim_of).astype(float), BLOCK) / counts
+        is_compared = is_compared & ((share_above == 0) | (share_above == 1))
     difference = block_sums(ours - reference, BLOCK) / counts
     z = np.where(is_compared, z_of(difference, total), 0)
     share = np.where(is_compared, counts, 0)
