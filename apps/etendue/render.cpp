@@ -72,14 +72,21 @@ RenderSettings settings_for(const Options& options, const LoadedScene& loaded) {
   return settings;
 }
 
-/// The command line's integrator where it names one; the file's parameters hold where both name the same.
+/// The command line's integrator where it names one; the file's parameters hold where both mean the same.
 IntegratorSettings integrator_for(const Options& options, const LoadedScene& loaded, Dialect dialect,
                                   std::vector<UnreadKey>& unread) {
-  const std::string& in_file = loaded.integrator.type;
-  if (!options.integrator.empty() && options.integrator != in_file)
-    return integrator_from_name(options.integrator);
-  return loaded.integrator.family.empty() ? IntegratorSettings{}
-                                          : make_integrator(loaded.integrator, dialect, unread);
+  const std::string& name = options.integrator;
+  if (loaded.integrator.family.empty())
+    return name.empty() ? IntegratorSettings{} : integrator_from_name(name);
+  std::vector<UnreadKey> unread_in_file;
+  const IntegratorSettings in_file = make_integrator(loaded.integrator, dialect, unread_in_file);
+  const bool is_named_so = name == loaded.integrator.type && in_file.kind != IntegratorKind::path;
+  if (!name.empty() && !is_named_so) {
+    const IntegratorSettings asked = integrator_from_name(name);
+    if (asked.name != in_file.name) return asked;
+  }
+  unread.insert(unread.end(), unread_in_file.begin(), unread_in_file.end());
+  return in_file;
 }
 
 Image to_image(const Film& film) {

@@ -1,5 +1,7 @@
 #include "geometry/camera.h"
 
+#include "base/reach.h"
+
 #include <fmt/format.h>
 #include <numbers>
 
@@ -105,7 +107,7 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   };
   const Vec3<double> origin = transform_point(world_from_camera, {0, 0, 0});
   camera.origin = {float(origin.x), float(origin.y), float(origin.z)};
-  if (!std::isfinite(length_sq(camera.origin)))
+  if (!is_within_reach(camera.origin))
     throw InputError(parameters.location("toWorld"), "the camera is too far from the origin to compute with",
                      "scale the scene to common sizes");
   camera.at_film_origin = to_world({-image_right * half_width, 0.5 * px * camera.height_px, 1});

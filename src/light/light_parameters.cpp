@@ -1,5 +1,7 @@
 #include "light/light_parameters.h"
 
+#include "base/reach.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -40,7 +42,7 @@ Transform rotation_from_light(const Parameters& parameters) {
 
 Vec3f world_point(const Parameters& parameters, std::string_view name) {
   const Vec3f point = narrow(transform_point(world_from_light(parameters), parameters.point(name)));
-  if (!std::isfinite(length_sq(point)))
+  if (!is_within_reach(point))
     throw InputError(parameters.location(name), fmt::format("'{}' lies beyond what can be rendered: {} {} {}",
                                                             name, point.x, point.y, point.z));
   return point;

@@ -1,5 +1,7 @@
 #include "medium/homogeneous.h"
 
+#include "base/reach.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -98,6 +100,11 @@ HomogeneousMedium make_medium(const Object& description, std::vector<UnreadKey>&
   if (!is_invertible(world_from_medium))
     throw InputError(parameters.location("toWorld"), "this transform is singular: it flattens the medium",
                      "check for a scale of 0 and for entries that are not finite");
+  const Vec3<double> lower = transform_point(world_from_medium, {0, 0, 0}),
+                     upper = transform_point(world_from_medium, {1, 1, 1});
+  if (!is_within_reach(lower) || !is_within_reach(upper))
+    throw InputError(parameters.location("toWorld"), "this medium reaches too far to compute with",
+                     "scale the scene to common sizes");
   return {nonnegative_color(parameters, "sigmaA"), nonnegative_color(parameters, "sigmaS"), phase,
           world_from_medium};
 }

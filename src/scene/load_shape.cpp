@@ -1,5 +1,6 @@
 #include "scene/load_shape.h"
 
+#include "base/reach.h"
 #include "geometry/obj_reader.h"
 #include "geometry/ply_reader.h"
 #include "geometry/repeated_triangles.h"
@@ -92,8 +93,7 @@ Sphere make_sphere(const Parameters& parameters) {
         "scale all axes alike and do not shear, or use a mesh");
   const Vec3<double> center = transform_point(transform, parameters.point("center"));
   const Sphere sphere{{float(center.x), float(center.y), float(center.z)}, float(radius * along_x)};
-  if (!(sphere.radius > 0) || !std::isfinite(sphere.radius * sphere.radius) ||
-      !std::isfinite(length_sq(sphere.center)))
+  if (!(sphere.radius > 0) || !is_within_reach(sphere.center) || !is_within_reach(Vec3f{sphere.radius, 0, 0}))
     throw InputError(
         parameters.object().location,
         fmt::format("in the world this sphere has radius {:.4g} at {:.4g} {:.4g} {:.4g}: beyond what can be "
