@@ -205,13 +205,16 @@ std::string replay_command(const Options& options, const InvalidSample& sample) 
 
 void report_invalid(const Options& options, const RenderResult& result) {
   if (result.counts.invalid_samples == 0) return;
-  fmt::print(stderr, "warning: {} of {} samples were not finite or negative; each counts as 0 in its pixel\n",
+  fmt::print(stderr,
+             "warning: {} of {} samples were not finite, or were negative; each counts as 0 in its pixel\n",
              result.counts.invalid_samples, result.counts.samples);
   for (const InvalidSample& sample : result.invalid)
     fmt::print(stderr, "  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y,
                sample.replicate, sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
-  fmt::print(stderr, "to see how the first of them came about:\n  {}\n",
-             replay_command(options, result.invalid.front()));
+  fmt::print(
+      stderr,
+      "to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
+      replay_command(options, result.invalid.front()));
 }
 
 int run(const Options& options) {
@@ -227,12 +230,9 @@ int run(const Options& options) {
   std::vector<UnreadKey> unread;
   settings.integrator = integrator_for(options, loaded, description.dialect, unread);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
-  if (const std::int32_t unseen = loaded.scene.lights.dirac_count();
-      unseen > 0 && settings.integrator.needs_lights() && !settings.integrator.rules.has_light_samples())
-    loaded.warnings.push_back(
-        fmt::format("{} samples no lights, so {} point, spot or directional light{} will not shine\n"
-                    "take light, mis, path_ems or path_mis",
-                    settings.integrator.name, unseen, unseen == 1 ? "" : "s"));
+  if (const std::string unseen = unseen_lights(settings.integrator, loaded.scene.lights.dirac_count());
+      !unseen.empty())
+    loaded.warnings.push_back(unseen);
   for (const UnreadKey& key : unread) loaded.warnings.push_back(key.message);
   warn(options, loaded.warnings);
   if (!options.replay.empty()) {
