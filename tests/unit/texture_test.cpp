@@ -55,12 +55,12 @@ void write_six_pixels(const std::filesystem::path& file) {
             {2, 3, {{"R", {0, 1, 2, 3, 4, 5}}, {"G", {1, 1, 1, 1, 1, 1}}, {"B", {0, 0, 0, 0, 0, 0}}}, {}});
 }
 
-ColorTexture load(const std::string& inside,
-                  const std::function<void(const std::filesystem::path&)>& prepare) {
+ColorTexture load(const std::string& inside, const std::function<void(const std::filesystem::path&)>& prepare,
+                  const std::string& type = "imagetexture") {
   const TemporaryFolder folder;
   prepare(folder.path());
   std::ofstream(folder.path() / "scene.xml")
-      << "<scene><bsdf type=\"diffuse\"><texture type=\"imagetexture\" name=\"albedo\">" << inside
+      << "<scene><bsdf type=\"diffuse\"><texture type=\"" << type << "\" name=\"albedo\">" << inside
       << "</texture></bsdf></scene>";
   const SceneDesc scene = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
   std::vector<UnreadKey> unread;
@@ -196,6 +196,15 @@ TEST(PngRead, BadFilesAreErrors) {
     std::ofstream(file, std::ios::binary) << broken;
     message();
   }
+}
+
+TEST(Texture, OtherNamesOfTheForks) {
+  const auto six = [](const auto& folder) { write_six_pixels(folder / "a.exr"); };
+  EXPECT_EQ(at(load(file_xml("a.exr"), six, "image_texture"), 0.3f, 0.6f), at(six_pixels(""), 0.3f, 0.6f));
+  const ColorTexture constant = load(
+      "<color name=\"value\" value=\"0.1 0.2 0.3\"/>", [](const auto&) {}, "constant_color");
+  EXPECT_TRUE(is_uniform(constant));
+  EXPECT_EQ(at(constant, 0.3f, 0.6f), (Colorf{0.1f, 0.2f, 0.3f}));
 }
 
 TEST(Texture, BadOnesAreErrorsThatNameThem) {
