@@ -141,9 +141,11 @@ TEST(IntegratorNames, MeanInEachDialectWhatThePageSays) {
 
 TEST(IntegratorNames, ThatThePageCallsOthersNamesMeanTheSame) {
   int found = 0;
-  std::string name;
+  std::string section, name;
   std::istringstream lines(page());
   for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("## ")) section = line;
+    if (section != "## Integrators") continue;
     if (line.starts_with("### `")) name = words_of(line).at(0);
     if (!line.starts_with("Another name of `")) continue;
     ++found;
