@@ -4,6 +4,7 @@
 
 #include "scenefile/dialect.h"
 #include "scenefile/nori_xml.h"
+#include "support/error_of.h"
 #include "support/program.h"
 
 #include <array>
@@ -40,12 +41,7 @@ Made make(const std::string& type, Dialect dialect, const std::string& inside = 
 }
 
 std::string error_of(const std::string& type, Dialect dialect, const std::string& inside) {
-  try {
-    make(type, dialect, inside);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_of([&] { make(type, dialect, inside); });
 }
 
 std::string text_xml(const std::string& name, const std::string& value) {

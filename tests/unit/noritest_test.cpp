@@ -10,6 +10,7 @@
 
 #include "render/thread_limit.h"
 #include "stats/quantile.h"
+#include "support/error_of.h"
 #include "support/program.h"
 
 #include <cmath>
@@ -36,12 +37,7 @@ class NoriTest : public testing::Test {
                          {}, warnings_);
   }
   std::string error(const std::string& text) {
-    try {
-      run(text);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return {};
+    return test::error_of([&] { run(text); });
   }
   static std::string ttest(const std::string& references, const std::string& rest) {
     return "<test type='ttest'><string name='references' value='" + references + "'/>" + rest + "</test>";

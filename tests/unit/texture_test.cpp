@@ -7,6 +7,7 @@
 
 #include "bsdf/bsdf.h"
 #include "film/image_file.h"
+#include "support/error_of.h"
 #include "test_scene.h"
 
 #include <fstream>
@@ -57,7 +58,7 @@ void write_six_pixels(const std::filesystem::path& file) {
 
 ColorTexture load(const std::string& inside, const std::function<void(const std::filesystem::path&)>& prepare,
                   const std::string& type = "imagetexture") {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   prepare(folder.path());
   std::ofstream(folder.path() / "scene.xml")
       << "<scene><bsdf type=\"diffuse\"><texture type=\"" << type << "\" name=\"albedo\">" << inside
@@ -129,7 +130,7 @@ double linear(double encoded) {
 }
 
 TEST(PngRead, EveryKindOfPixelIsDecoded) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.png";
   const auto first = [&](PngEncoding encoding, std::size_t pixel) {
     const Image image = read_png(file, encoding);
@@ -155,7 +156,7 @@ TEST(PngRead, EveryKindOfPixelIsDecoded) {
 }
 
 TEST(PngRead, WhatIsWrittenIsReadAgain) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   Image image{256, 1, {{"R", {}}, {"G", {}}, {"B", {}}}, {}};
   for (int i = 0; i < 256; ++i)
     for (Channel& channel : image.channels) channel.values.push_back(float(linear(i / 255.0)));
@@ -164,19 +165,10 @@ TEST(PngRead, WhatIsWrittenIsReadAgain) {
   EXPECT_EQ(again.find("G")->values, image.channels[1].values);
 }
 
-std::string message_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(PngRead, BadFilesAreErrors) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.png";
-  const auto message = [&] { return message_of([&] { read_png(file, PngEncoding::srgb); }); };
+  const auto message = [&] { return test::error_of([&] { read_png(file, PngEncoding::srgb); }); };
   EXPECT_THAT(message(), HasSubstr("there is no such file"));
   std::ofstream(file) << "this is text";
   EXPECT_THAT(message(), HasSubstr("a.png: cannot read this PNG image: Not a PNG file"));
@@ -209,12 +201,13 @@ TEST(Texture, OtherNamesOfTheForks) {
 
 TEST(Texture, BadOnesAreErrorsThatNameThem) {
   const auto nothing = [](const std::filesystem::path&) {};
-  EXPECT_THAT(message_of([&] { load(file_xml("b.png"), nothing); }), HasSubstr("'b.png' is not there"));
-  EXPECT_THAT(message_of([&] { load("", nothing); }), HasSubstr("lacks 'filename'"));
-  EXPECT_THAT(message_of([&] { load(file_xml("scene.xml"), nothing); }), HasSubstr("ends in .exr or .png"));
-  EXPECT_THAT(message_of([&] { six_pixels("<string name=\"wrap\" value=\"repeated\"/>"); }),
+  EXPECT_THAT(test::error_of([&] { load(file_xml("b.png"), nothing); }), HasSubstr("'b.png' is not there"));
+  EXPECT_THAT(test::error_of([&] { load("", nothing); }), HasSubstr("lacks 'filename'"));
+  EXPECT_THAT(test::error_of([&] { load(file_xml("scene.xml"), nothing); }),
+              HasSubstr("ends in .exr or .png"));
+  EXPECT_THAT(test::error_of([&] { six_pixels("<string name=\"wrap\" value=\"repeated\"/>"); }),
               HasSubstr("did you mean 'repeat'?"));
-  EXPECT_THAT(message_of([&] {
+  EXPECT_THAT(test::error_of([&] {
                 load(file_xml("a.exr"), [](const std::filesystem::path& folder) {
                   write_exr(folder / "a.exr", {1, 1, {{"Y", {-1}}}, {}});
                 });
