@@ -4,6 +4,8 @@
 #include "commands.h"
 #include "film/image_file.h"
 #include "film/temporary_file.h"
+#include "interrupt.h"
+#include "output_files.h"
 #include "progress.h"
 #include "render/thread_limit.h"
 #include "replay.h"
@@ -11,8 +13,6 @@
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,14 +33,6 @@ struct Options {
   RunOptions run;
   bool is_quiet = false, is_strict = false, is_in_sample_order = false;
 };
-
-std::atomic<bool> stop_requested{false};
-
-/// The first Ctrl-C ends the render early and keeps what is done; the second one kills.
-extern "C" void handle_interrupt(int signal_number) {
-  stop_requested = true;
-  std::signal(signal_number, SIG_DFL);
-}
 
 /// The largest divisor of `samples` up to 8, so that a pixel's error is known where it can be.
 int default_replicates(int samples) {
@@ -149,6 +141,8 @@ nlohmann::ordered_json stats(const Options& options, const RenderSettings& setti
   json["seconds_load"] = loaded.seconds_read;
   json["seconds_build"] = loaded.seconds_build;
   json["seconds_render"] = result.seconds;
+  json["pixels_not_rendered"] =
+      std::int64_t(result.film.width()) * result.film.height() - count_rendered(result.film);
   json["samples"] = result.counts.samples;
   json["samples_per_second"] = double(result.counts.samples) / result.seconds;
   json["camera_rays"] = result.counts.camera_rays;
@@ -221,6 +215,9 @@ int run(const Options& options) {
   for (const std::string& output : options.outputs) check_writable(output);
   if (!options.stats_file.empty()) check_destination(options.stats_file);
   const SceneDesc description = read_nori_xml(options.scene_file, options.run.dialect());
+  std::vector<std::string> written = options.outputs;
+  if (!options.stats_file.empty()) written.push_back(options.stats_file);
+  check_overwrites_nothing(written, files_of(description, options.scene_file));
   const ThreadLimit thread_limit(options.run.threads);
   LoadedScene loaded = load_scene(description);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
@@ -235,6 +232,9 @@ int run(const Options& options) {
   warn(options, loaded.warnings);
   if (!options.replay.empty()) {
     const SampleId sample = sample_id_from_text(options.replay);
+    if (!written.empty())
+      fmt::print(stderr, "warning: --replay computes one sample; nothing is written to {}\n",
+                 fmt::join(written, ", "));
     fmt::print("{}", describe(loaded.scene, sample, replay(loaded.scene, settings, sample)));
     return done;
   }
@@ -245,7 +245,7 @@ int run(const Options& options) {
                loaded.scene.camera.width_px, loaded.scene.camera.height_px, settings.samples_per_pixel,
                settings.replicates, settings.integrator.name, threads, isa_name(settings.isa));
 
-  std::signal(SIGINT, handle_interrupt);
+  catch_interrupts();
   const RenderResult result = [&] {
     Progress progress("render", options.is_quiet);
     return render(
@@ -271,7 +271,7 @@ int run(const Options& options) {
   if (needs_both_pdfs(settings.integrator.rules.direct_light))
     image.metadata.emplace_back("heuristic", heuristic_name(settings.integrator.rules.direct_light));
   for (const std::filesystem::path output : options.outputs)
-    output.extension() == ".png" ? write_png(output, image) : write_exr(output, image);
+    image_format(output) == ImageFormat::png ? write_png(output, image) : write_exr(output, image);
   if (!options.stats_file.empty())
     write_text_file(options.stats_file,
                     stats(options, settings, description, loaded, result, threads).dump(2) + "\n");
@@ -299,10 +299,13 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--integrator", options->integrator, "Instead of the file's; see etendue info");
   command->add_option("--sampler", options->sampler, "Instead of the file's: independent or sobol");
-  command->add_option("--spp", options->samples_per_pixel, "Samples a pixel in all, instead of the file's");
-  command->add_option("--replicates", options->replicates,
-                      "Independent parts that the samples of a pixel are split into, from which its error is "
-                      "estimated; must divide --spp [largest divisor up to 8]");
+  command->add_option("--spp", options->samples_per_pixel, "Samples a pixel in all, instead of the file's")
+      ->check(whole_number_problem);
+  command
+      ->add_option("--replicates", options->replicates,
+                   "Independent parts that the samples of a pixel are split into, from which its error is "
+                   "estimated; must divide --spp [largest divisor up to 8]")
+      ->check(whole_number_problem);
   add_run_options(*command, options->run);
   command->add_option("--stats", options->stats_file, "JSON file for settings, times and counts");
   command->add_option("--replay", options->replay,

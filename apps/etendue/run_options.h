@@ -20,6 +20,10 @@ struct RunOptions {
   std::optional<Dialect> dialect() const;  ///< Throws InputError for an unknown one.
 };
 
+/// Says what is wrong with the text of a whole number, for CLI11's check(); empty where nothing is. CLI11
+/// itself takes 010 for 8, and what is too large for the largest.
+std::string whole_number_problem(const std::string& text);
+
 /// Adds --seed, --threads, --isa and --dialect. `options` must live as long as the command.
 void add_run_options(CLI::App& command, RunOptions& options);
 

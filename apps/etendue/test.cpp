@@ -1,7 +1,9 @@
 #include "base/error.h"
 #include "commands.h"
 #include "film/temporary_file.h"
+#include "interrupt.h"
 #include "noritest/noritest.h"
+#include "output_files.h"
 #include "render/thread_limit.h"
 #include "run_options.h"
 #include "scenefile/dialect.h"
@@ -113,17 +115,23 @@ void print_summary(const Options& options, const Counts& counts) {
   if (counts.unreadable_files > 0)
     text += fmt::format("; {} file{} could not be used", counts.unreadable_files,
                         counts.unreadable_files == 1 ? "" : "s");
+  if (stop_requested) text += "; interrupted, the others were not run";
   fmt::print("{}\n", text);
 }
 
 int run(const Options& options) {
   if (!options.json_file.empty()) check_destination(options.json_file);
-  const TestSettings settings{options.run.seed, options.run.isa(), sampler_from_name(options.sampler)};
+  if (!options.json_file.empty())
+    check_overwrites_nothing({options.json_file}, {options.files.begin(), options.files.end()});
+  const TestSettings settings{options.run.seed, options.run.isa(), sampler_from_name(options.sampler),
+                              &stop_requested};
   options.run.dialect();  // An unknown one is an error once, not for each file.
   const ThreadLimit thread_limit(options.run.threads);
   Counts counts;
   Json all = Json::array();
+  catch_interrupts();
   for (const std::string& file : options.files) {
+    if (stop_requested) break;
     try {
       run_file(options, settings, file, counts, all);
     } catch (const InputError& error) {  // The other files are tested all the same.
@@ -139,6 +147,7 @@ int run(const Options& options) {
     std::fwrite(text.data(), 1, text.size(), out.stream());
     out.commit();
   }
+  if (stop_requested) return interrupted;
   if (counts.unreadable_files > 0 || counts.errors > 0) return bad_input;
   return counts.failed > 0 ? check_failed : done;
 }

@@ -14,9 +14,18 @@ const Channel* Image::find(const std::string& name) const {
   return found == channels.end() ? nullptr : &*found;
 }
 
+std::optional<ImageFormat> image_format(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  if (ending == ".exr") return ImageFormat::exr;
+  if (ending == ".png") return ImageFormat::png;
+  return std::nullopt;
+}
+
 void check_writable(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
-  if (ending != ".exr" && ending != ".png")
+  if (!image_format(file))
     throw InputError(fmt::format(
         "{}: cannot tell the format of the image from {}\nexpected: a name that ends in .exr (float, all "
         "layers) "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +47,10 @@ enum class PngEncoding { srgb, linear };
 /// 16 bits a channel. Alpha, colour profiles and gamma chunks are left aside. Throws InputError for what
 /// cannot be read.
 Image read_png(const std::filesystem::path& file, PngEncoding encoding);
+
+enum class ImageFormat { exr, png };
+/// By the ending of the name, in small letters or capitals; none where it is neither.
+std::optional<ImageFormat> image_format(const std::filesystem::path& file);
 
 /// Throws InputError unless the file's folder exists and can be written and its ending is .exr or .png:
 /// asked before a render, not after.

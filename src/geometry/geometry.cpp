@@ -16,6 +16,7 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
   add_row(ids);
   first_triangle.back() = std::int32_t(indices.size() / 3);
   has_normals.back() = mesh.normals.empty() ? 0 : 1;
+  has_uvs.back() = mesh.uvs.empty() ? 0 : 1;
   triangles.back() = std::int32_t(mesh.triangle_count());
   has_any_normals = has_any_normals || !mesh.normals.empty();
   positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
@@ -50,7 +51,7 @@ std::int32_t Geometry::add_disk(const Disk& added, SurfaceIds ids) {
 void Geometry::add_row(SurfaceIds ids) {
   material.push_back(ids.material);
   light.push_back(ids.light);
-  for (std::vector<std::int32_t>* column : {&first_triangle, &has_normals, &triangles}) column->push_back(0);
+  for (std::vector<std::int32_t>* column : {&first_triangle, &has_normals, &has_uvs, &triangles}) column->push_back(0);
   for (std::vector<std::int32_t>* column : {&sphere, &disk}) column->push_back(-1);
 }
 

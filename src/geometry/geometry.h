@@ -45,6 +45,7 @@ class Geometry {
   std::vector<std::int32_t> material, light;
   std::vector<std::int32_t> first_triangle;  ///< Into `indices`, in triangles; 0 unless a mesh.
   std::vector<std::int32_t> has_normals;     ///< 1 where the mesh has vertex normals.
+  std::vector<std::int32_t> has_uvs;         ///< 1 where the mesh has texture coordinates.
   std::vector<std::int32_t> triangles;       ///< Number of them; 0 unless a mesh.
   std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 unless a sphere.
   std::vector<std::int32_t> disk;            ///< Into `disks`; -1 unless a disk.

@@ -31,7 +31,7 @@ Vec2<F> disk_uv(const Vec2<F>& on_disk) {
 }
 
 /// Surface coordinates of a hit in the lanes of `m`: of a mesh interpolated at barycentric (u, v) of its
-/// triangle, (0, 0) where it has none; else by the functions above.
+/// triangle, and these themselves where it has none, as in Nori; else by the functions above.
 template <class F>
 Vec2<F> surface_uv(const Geometry& geometry, const Int<F>& geometry_id, const Int<F>& primitive,
                    const Vec2<F>& barycentric, const Vec3<F>& ng, const Mask<F>& m) {
@@ -47,7 +47,10 @@ Vec2<F> surface_uv(const Geometry& geometry, const Int<F>& geometry_id, const In
   if (any(is_sphere)) choose(is_sphere, sphere_uv(ng));
   if (any(is_disk)) choose(is_disk, disk_uv(barycentric));
   if (!any(is_mesh)) return uv;
-  const Int<F> triangle = select(is_mesh, gather(geometry.first_triangle.data(), safe_id) + primitive, zero);
+  const Mask<F> has_uvs = mask_and(is_mesh, equal(gather(geometry.has_uvs.data(), safe_id), Int<F>(1)));
+  choose(is_mesh, barycentric);
+  if (!any(has_uvs)) return uv;
+  const Int<F> triangle = select(has_uvs, gather(geometry.first_triangle.data(), safe_id) + primitive, zero);
   const float* uvs = &geometry.uvs[0].x;
   const auto corner_uv = [&](int corner) {
     const Int<F> at = gather(geometry.indices.data() + corner, triangle * Int<F>(3)) * Int<F>(2);
@@ -55,7 +58,7 @@ Vec2<F> surface_uv(const Geometry& geometry, const Int<F>& geometry_id, const In
   };
   const Vec2<F> uv_0 = corner_uv(0), uv_1 = corner_uv(1), uv_2 = corner_uv(2);
   const F w = F(1) - barycentric.x - barycentric.y;
-  choose(is_mesh, {uv_0.x * w + uv_1.x * barycentric.x + uv_2.x * barycentric.y,
+  choose(has_uvs, {uv_0.x * w + uv_1.x * barycentric.x + uv_2.x * barycentric.y,
                    uv_0.y * w + uv_1.y * barycentric.x + uv_2.y * barycentric.y});
   return uv;
 }

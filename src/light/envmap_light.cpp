@@ -1,8 +1,7 @@
 #include "light/envmap_light.h"
 
-#include "film/image_file.h"
 #include "light/light_parameters.h"
-#include "scenefile/existing_file.h"
+#include "texture/color_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +17,7 @@ const Plugin envmap_plugin{
     "light",
     "envmap",
     "Light from all around, by an image in latitude and longitude; y of the light is up.",
-    {{"filename", Type::text, "", "", "An EXR image with R, G, B or Y, relative to the scene file", true},
+    {{"filename", Type::text, "", "", "An EXR or PNG image, relative to the scene file", true},
      {"scale", Type::real, "1", "", "Factor of the image's radiance"},
      {"toWorld", Type::transform, "", "", "World from light, a rotation; identity unless given"}},
     {}};
@@ -34,20 +33,14 @@ std::int32_t EnvmapLights::add(Envmap map, const Transform& world_from_map) {
 namespace {
 
 /// The image's colour, three numbers a texel.
-Envmap read_envmap(const std::filesystem::path& file, const Location& where) {
-  const Image image = read_exr(file);
+Envmap read_envmap(const Parameters& parameters, const std::filesystem::path& directory) {
+  const ColorImage color = read_color_image(parameters, "filename", directory, PngEncoding::srgb);
+  const Image& image = color.image;
   const auto fail = [&](const std::string& problem, const std::string& hint) {
-    return InputError(where, fmt::format("{}: {}", file.string(), problem), hint);
+    return InputError(parameters.location("filename"),
+                      fmt::format("{}: {}", (directory / parameters.text("filename")).string(), problem),
+                      hint);
   };
-  const Channel* grey = image.find("Y");
-  const std::array<const Channel*, 3> channels{image.find("R") ? image.find("R") : grey,
-                                               image.find("G") ? image.find("G") : grey,
-                                               image.find("B") ? image.find("B") : grey};
-  if (!channels[0] || !channels[1] || !channels[2]) {
-    std::string names;
-    for (const Channel& channel : image.channels) names += (names.empty() ? "" : ", ") + channel.name;
-    throw fail("an environment map needs the channels R, G and B, or Y", "it has: " + names);
-  }
   const auto width = std::size_t(image.width), height = std::size_t(image.height);
   if (3 * width * height > std::size_t(std::numeric_limits<std::int32_t>::max()))
     throw fail(fmt::format("{} x {} texels are more than an environment map can have", width, height),
@@ -58,10 +51,10 @@ Envmap read_envmap(const std::filesystem::path& file, const Location& where) {
   bool is_black = true;
   for (std::size_t i = 0; i < width * height; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
-      const float value = channels[k]->values[i];
+      const float value = color.value(i, k);
       if (!(value >= 0 && value <= largest))
-        throw fail(fmt::format("texel ({}, {}) is {} {} {}", i % width, i / width, channels[0]->values[i],
-                               channels[1]->values[i], channels[2]->values[i]),
+        throw fail(fmt::format("texel ({}, {}) is {} {} {}", i % width, i / width, color.value(i, 0),
+                               color.value(i, 1), color.value(i, 2)),
                    fmt::format("radiance must be a number from 0 to {:g}; mend the image", largest));
       is_black = is_black && value == 0;
       rgb[3 * i + k] = value;
@@ -79,8 +72,7 @@ EnvmapLight make_envmap_light(const Object& description, const std::filesystem::
   if (!(scale > 0 && scale <= 1e6))
     throw InputError(parameters.location("scale"),
                      fmt::format("'scale' is {}; it must be above 0 and at most 1e6", scale));
-  const std::filesystem::path file = existing_file(parameters, "filename", directory, "an EXR image");
-  return {read_envmap(file, parameters.location("filename")), rotation_from_light(parameters), float(scale)};
+  return {read_envmap(parameters, directory), rotation_from_light(parameters), float(scale)};
 }
 
 }  // namespace etendue

@@ -18,6 +18,7 @@ struct TestRun {
   /// Runs `measure(result)`, which fills in the numbers, and judges nothing that is thrown as a pass.
   template <class Measure>
   void run_case(CaseResult result, Measure&& measure) {
+    if (settings.stop && *settings.stop) return;
     const auto start = std::chrono::steady_clock::now();
     try {
       measure(result);

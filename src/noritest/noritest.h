@@ -5,6 +5,7 @@
 #include "sampler/sampler.h"
 #include "scenefile/parameters.h"
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -19,8 +20,10 @@ struct TestSettings {
   std::uint64_t seed = 0;
   Isa isa = Isa::scalar;  ///< For scenes; BSDFs and lights are tested one lane wide.
   /// Sobol points make p-values cautious: means scatter less than the t-test believes, so that a correct
-  /// renderer fails less often than the level says, and a wrong one no later. Independent ones make them exact.
+  /// renderer fails less often than the level says, and a wrong one no later. Independent ones make them
+  /// exact.
   SamplerKind sampler = SamplerKind::sobol;
+  const std::atomic<bool>* stop = nullptr;  ///< Where it is true, no further case is run.
 };
 
 /// What became of one case. A number that the kind of test does not have is NaN.

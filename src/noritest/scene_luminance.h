@@ -16,8 +16,8 @@ struct SceneLuminance {
 };
 
 /// Renders `count` samples whose places are uniform over the whole film, through the
-/// kernel and with the sampler that `test` says. The scene's camera, filter and sampler are replaced. A function of the seed
-/// alone, not of the number of threads.
+/// kernel and with the sampler that `test` says. The scene's camera, filter and sampler are replaced. A
+/// function of the seed alone, not of the number of threads.
 SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrator, std::int64_t count,
                                 const TestSettings& test, std::uint64_t seed);
 

@@ -73,6 +73,7 @@ void judge(CaseResult& result, const RunningStatistics& samples, std::int64_t in
 void test_scene(TestRun& run, const Object& scene, double reference, std::uint64_t seed,
                 const TTestRules& rules) {
   CaseResult result{.kind = "ttest", .subject = "scene", .reference = reference};
+  result.type = IntegratorSettings{}.name;
   for (const Object& child : scene.children)
     if (child.family == "integrator") result.type = child.type;
   run.run_case(result, [&](CaseResult& measured) {

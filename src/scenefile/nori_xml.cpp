@@ -21,6 +21,23 @@ const std::vector<std::string> property_tags{"boolean", "integer", "float",  "st
                                              "color",   "point",   "vector", "transform"};
 const std::vector<std::string> operation_tags{"translate", "scale", "rotate", "lookat", "lookAt", "matrix"};
 
+/// What may stand in an element, for messages.
+std::vector<std::string> tags_inside(std::string_view tag) {
+  std::vector<std::string> known = property_tags;
+  const auto add = [&](const std::vector<std::string>& tags) {
+    known.insert(known.end(), tags.begin(), tags.end());
+  };
+  if (tag == "scene" || tag == "test" || tag == "mesh" || tag == "shape")
+    add(object_tags);
+  else if (tag == "camera")
+    add({"sampler", "rfilter"});
+  else if (tag == "medium")
+    add({"phase"});
+  else
+    add({"texture"});
+  return known;
+}
+
 /// What forks put into a scene to judge or show its image: nothing of it is in the image.
 const std::vector<std::string> bystander_tags{"evaluator", "previewer", "denoiser"};
 
@@ -322,10 +339,12 @@ Object Reader::read_object(const Element& element, int level) {
     throw InputError(element.location, fmt::format("elements are nested more than {} deep", most_levels));
   std::vector<std::string> attributes{"type", "name"};
   if (level == 1) attributes.emplace_back("dialect");
-  element.allow_only(attributes,
-                     level == 1 && element.find("version")
-                         ? "this seems to be a Mitsuba scene; read here are the formats of the Nori family"
-                         : "");
+  std::string_view hint;
+  if (level == 1 && element.find("version"))
+    hint = "this seems to be a Mitsuba scene; read here are the formats of the Nori family";
+  if (level > 1 && element.find("dialect"))
+    hint = "the dialect is stated once, on the root element of the file";
+  element.allow_only(attributes, hint);
   Object object{element.tag, {}, {}, element.location, element.location, {}, {}};
   if (const Attribute* name = element.find("name")) object.name = name->text;
   if (element.tag != "scene" || element.find("type")) {
@@ -354,10 +373,8 @@ Object Reader::read_object(const Element& element, int level) {
     } else if (contains(operation_tags, child.tag)) {
       throw InputError(child.location, fmt::format("<{}> may stand only inside <transform>", child.tag));
     } else {
-      std::vector<std::string> known = property_tags;
-      known.insert(known.end(), object_tags.begin(), object_tags.end());
       throw InputError(child.location, fmt::format("unknown tag <{}>", child.tag),
-                       known_names(child.tag, known));
+                       known_names(child.tag, tags_inside(element.tag)));
     }
   }
   return object;

@@ -1,6 +1,6 @@
 #include "texture/image_texture.h"
 
-#include "film/image_file.h"
+#include "texture/color_image.h"
 
 #include <array>
 #include <cmath>
@@ -23,33 +23,6 @@ T choice(const Parameters& parameters, const char* key,
   }
   throw InputError(parameters.location(key), fmt::format("unknown {} '{}'", key, name),
                    known_names(name, known));
-}
-
-Image read_image(const Parameters& parameters, const std::filesystem::path& directory, PngEncoding encoding) {
-  const std::string name = parameters.text("filename");
-  const std::filesystem::path file = directory / name;
-  const Location& where = parameters.location("filename");
-  std::error_code error;
-  if (!std::filesystem::exists(file, error))
-    throw InputError(where, fmt::format("'{}' is not there", name),
-                     fmt::format("looked for {}", file.string()));
-  const std::string ending = file.extension().string();
-  if (ending == ".exr") return read_exr(file);
-  if (ending == ".png") return read_png(file, encoding);
-  throw InputError(where, fmt::format("cannot tell the format of the image '{}'", name),
-                   "expected: a name that ends in .exr or .png");
-}
-
-/// The channels of colour: R, G, B, or a grey image's only one three times.
-std::array<const Channel*, 3> colors_of(const Image& image, const Parameters& parameters) {
-  const std::array<const Channel*, 3> rgb{image.find("R"), image.find("G"), image.find("B")};
-  if (rgb[0] && rgb[1] && rgb[2]) return rgb;
-  const Channel* grey = image.find("Y");
-  if (!grey && image.channels.size() == 1) grey = &image.channels.front();
-  if (!grey)
-    throw InputError(parameters.location("filename"),
-                     fmt::format("'{}' has no channels R, G and B, nor Y", parameters.text("filename")));
-  return {grey, grey, grey};
 }
 
 }  // namespace
@@ -75,9 +48,9 @@ ImageTexture make_image_texture(const Object& description, const std::filesystem
       {{{"bilinear", Interpolation::bilinear}, {"nearest", Interpolation::nearest}}});
   texture.wrap = choice<Wrap, 3>(
       parameters, "wrap", {{{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}}});
-  const Image image =
-      read_image(parameters, directory, parameters.boolean("raw") ? PngEncoding::linear : PngEncoding::srgb);
-  const std::array<const Channel*, 3> channels = colors_of(image, parameters);
+  const ColorImage color = read_color_image(
+      parameters, "filename", directory, parameters.boolean("raw") ? PngEncoding::linear : PngEncoding::srgb);
+  const Image& image = color.image;
   texture.width = image.width;
   texture.height = image.height;
   const std::size_t width = std::size_t(image.width), height = std::size_t(image.height);
@@ -88,7 +61,7 @@ ImageTexture make_image_texture(const Object& description, const std::filesystem
   for (std::size_t y = 0; y < height; ++y)
     for (std::size_t x = 0; x < width; ++x)
       for (std::size_t c = 0; c < 3; ++c) {
-        const float value = channels[c]->values[(height - 1 - y) * width + x];
+        const float value = color.value((height - 1 - y) * width + x, c);
         if (!(value >= 0 && std::isfinite(value)))
           throw InputError(
               parameters.location("filename"),

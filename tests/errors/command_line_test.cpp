@@ -118,6 +118,7 @@ TEST_F(CommandLine, StatsHaveTheirKeys) {
   EXPECT_EQ(stats.at("triangles"), 2);
   EXPECT_EQ(stats.at("lights"), 1);
   EXPECT_EQ(stats.at("invalid_samples"), 0);
+  EXPECT_EQ(stats.at("pixels_not_rendered"), 0);
   for (const char* key : {"shadow_rays", "bsdf_rays", "peak_memory_bytes"}) {
     EXPECT_TRUE(stats.at(key).is_number_integer()) << key;
     EXPECT_GT(stats.at(key), 0) << key;
@@ -188,6 +189,69 @@ TEST_F(CommandLine, InterruptKeepsWhatWasRendered) {
   EXPECT_LT(unknown, 512 * 512);
   EXPECT_EQ(metadata(image, "pixelsNotRendered"), std::to_string(unknown));
   EXPECT_EQ(json("s.json").at("samples"), (512 * 512 - unknown) * 5000);
+  EXPECT_EQ(json("s.json").at("pixels_not_rendered"), unknown);
+}
+
+TEST_F(CommandLine, InterruptKeepsTheCasesThatWereRun) {
+  std::string cases;
+  for (int i = 0; i < 50; ++i) cases += "<bsdf type=\"phong\"/>\n";
+  write_file(path("t.xml"),
+             "<test type=\"chi2test\"><integer name=\"testCount\" value=\"100\"/>\n" + cases + "</test>");
+  Program program({"test", "t.xml", "--json", "t.json", "--threads", "1"}, folder_.path());
+  while (program.out_so_far().find(" 1 chi2test") == std::string::npos && program.seconds() < 60)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.out, HasSubstr("interrupted, the others were not run"));
+  EXPECT_GE(json("t.json").size(), 1u);
+  EXPECT_LT(json("t.json").size(), 5000u);
+}
+
+TEST_F(CommandLine, NothingThatIsReadIsWrittenOver) {
+  const std::string scene = read_file(path("scene.xml"));
+  std::filesystem::create_directory(path("sub"));
+  for (const char* stats : {"scene.xml", "./scene.xml", "sub/../scene.xml"}) {
+    const ProgramResult result = run({"render", "scene.xml", "-o", "a.exr", "--spp", "1", "--stats", stats});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("this file would be overwritten, and it is read"));
+  }
+  EXPECT_EQ(read_file(path("scene.xml")), scene);
+  EXPECT_THAT(run({"render", "scene.xml", "-o", "a.exr", "--spp", "1", "--stats", "./a.exr"}).err,
+              HasSubstr("this file would be written twice"));
+
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "sky.exr", "--spp", "1"}).exit_code, 0);
+  write_file(
+      path("lit.xml"),
+      "<scene><camera type=\"perspective\"/><shape type=\"rectangle\"/><emitter type=\"envmap\"><string "
+      "name=\"filename\" value=\"sky.exr\"/></emitter></scene>");
+  EXPECT_EQ(run({"render", "lit.xml", "-o", "sky.exr", "--spp", "1"}).exit_code, 2);
+
+  write_file(path("t.xml"), "<test type=\"ttest\"/>");
+  EXPECT_THAT(run({"test", "t.xml", "--json", "t.xml"}).err, HasSubstr("this file would be overwritten"));
+}
+
+TEST_F(CommandLine, WholeNumbersAreTakenAsTheyStand) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{
+      {{"--spp", "010"}, "010 begins with a 0; write 10"},
+      {{"--spp", "0x10"}, "0x10 is not a whole number"},
+      {{"--replicates", "2.0"}, "2.0 is not a whole number"},
+      {{"--threads", "01"}, "01 begins with a 0; write 1"},
+      {{"--seed", "18446744073709551616"}, "too large; expected at most 18446744073709551615"}};
+  for (const auto& [option, problem] : wrong) {
+    const ProgramResult result = run({"render", "scene.xml", "-o", "a.exr", option[0], option[1]});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(problem));
+  }
+  EXPECT_EQ(
+      run({"render", "scene.xml", "-o", "a.exr", "--spp", "1", "--seed", "18446744073709551615"}).exit_code,
+      0);
+}
+
+TEST_F(CommandLine, EndingsMayBeCapitals) {
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "a.PNG", "-o", "a.EXR", "--spp", "1"}).exit_code, 0);
+  EXPECT_EQ(read_file(path("a.PNG")).substr(1, 3), "PNG");
+  EXPECT_EQ(read_exr(path("a.EXR")).width, 40);
 }
 
 TEST_F(CommandLine, AFailedRenderLeavesTheOldImage) {

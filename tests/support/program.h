@@ -54,6 +54,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void send(int signal) const { kill(process_, signal); }
+  std::string out_so_far() const { return read_file(streams_.path() / "out"); }
   std::string err_so_far() const { return read_file(streams_.path() / "err"); }
 
   /// Kills it, for an exit code of -SIGKILL, where it is not done in time.

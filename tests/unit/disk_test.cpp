@@ -151,6 +151,10 @@ TEST(SurfaceUv, ChoosesByShape) {
   EXPECT_EQ(uv(1), (Vec2f{1, 1}));
   EXPECT_NEAR(uv(2).x, std::hypot(0.5, 0.25), 1e-6);
   EXPECT_EQ(uv(3), (Vec2f{1, 1}));
+  mesh.uvs.clear();
+  const int bare = geometry.add_mesh(mesh, {0, -1});
+  EXPECT_EQ(uv(bare), (Vec2f{0.5f, 0.25f}));
+  EXPECT_EQ(uv(3), (Vec2f{1, 1}));
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST(LoadLight, RefusesWhatMakesNoSense) {
   EXPECT_THAT(light("envmap", R"(<string name="filename" value="none.exr"/>)"),
               HasSubstr("'none.exr' is not there"));
   EXPECT_THAT(light("envmap", R"(<string name="filename" value="scene.xml"/>)"),
-              HasSubstr("not an EXR file"));
+              HasSubstr("neither an EXR nor a PNG image"));
   EXPECT_THAT(
       light("envmap", R"(<string name="filename" value="scene.xml"/><float name="scale" value="-1"/>)"),
       HasSubstr("'scale' is -1"));

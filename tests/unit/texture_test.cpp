@@ -204,7 +204,7 @@ TEST(Texture, BadOnesAreErrorsThatNameThem) {
   EXPECT_THAT(test::error_of([&] { load(file_xml("b.png"), nothing); }), HasSubstr("'b.png' is not there"));
   EXPECT_THAT(test::error_of([&] { load("", nothing); }), HasSubstr("lacks 'filename'"));
   EXPECT_THAT(test::error_of([&] { load(file_xml("scene.xml"), nothing); }),
-              HasSubstr("ends in .exr or .png"));
+              HasSubstr("'scene.xml' is neither an EXR nor a PNG image"));
   EXPECT_THAT(test::error_of([&] { six_pixels("<string name=\"wrap\" value=\"repeated\"/>"); }),
               HasSubstr("did you mean 'repeat'?"));
   EXPECT_THAT(test::error_of([&] {

@@ -1,0 +1,54 @@
+#include "output_files.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <system_error>
+#include <variant>
+
+namespace etendue::app {
+
+namespace {
+
+void add_files(const Object& object, const std::filesystem::path& directory,
+               std::vector<std::filesystem::path>& files) {
+  for (const Property& property : object.properties)
+    if (const std::string* name = std::get_if<std::string>(&property.value);
+        name && property.name == "filename")
+      files.push_back(directory / *name);
+  for (const Object& child : object.children) add_files(child, directory, files);
+}
+
+/// Also by another way to the same file.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  const auto whole = [&](const std::filesystem::path& file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
+  };
+  return (whole(a) == whole(b) && !whole(a).empty()) || std::filesystem::equivalent(a, b, error);
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(const SceneDesc& description,
+                                            const std::filesystem::path& scene_file) {
+  std::vector<std::filesystem::path> files{scene_file};
+  add_files(description.root, description.directory, files);
+  return files;
+}
+
+void check_overwrites_nothing(const std::vector<std::string>& written,
+                              const std::vector<std::filesystem::path>& read) {
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    for (const std::filesystem::path& file : read)
+      if (is_same_file(written[i], file))
+        throw InputError(fmt::format(
+            "{}: this file would be overwritten, and it is read\nwrite to another name", written[i]));
+    for (std::size_t k = 0; k < i; ++k)
+      if (is_same_file(written[i], written[k]))
+        throw InputError(fmt::format(
+            "{}: this file would be written twice\ngive each output a name of its own", written[i]));
+  }
+}
+
+}  // namespace etendue::app

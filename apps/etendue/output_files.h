@@ -1,0 +1,20 @@
+// What a command writes must not be what it reads, nor one thing twice.
+#pragma once
+
+#include "scenefile/scene_desc.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace etendue::app {
+
+/// The scene file itself, and what its `filename` keys name.
+std::vector<std::filesystem::path> files_of(const SceneDesc& description,
+                                            const std::filesystem::path& scene_file);
+
+/// Throws InputError where a file to be written is one of those read, or stands in the list twice.
+void check_overwrites_nothing(const std::vector<std::string>& written,
+                              const std::vector<std::filesystem::path>& read);
+
+}  // namespace etendue::app
