@@ -1,32 +1,34 @@
 """Do two noisy pictures of one scene agree? A z-test of block means, the noises of both estimated.
 
-Blocks, not pixels: Nori splats a sample into all pixels within 2 px, so that neighbouring pixels share samples; Etendue
-draws each pixel's samples from the pixel filter, so that its pixels are independent. The expectation is the same but
-for two things at edges: Nori reads its filter from a table of 32 steps, and divides each pixel by its own sum of
-weights. A mean of 16 x 16 pixels sees next to nothing of them. The outermost 2 px are left out: Nori has no samples
-beyond the picture, so there its filter is cut off.
+Blocks, not pixels: Nori splats a sample into all pixels within 2 px, so that neighbouring pixels share samples;
+Etendue draws each pixel's samples from the pixel filter, so that its pixels are independent. The expectation is the
+same but for two things at edges: Nori reads its filter from a table of 32 steps, and divides each pixel by its own
+sum of weights. A mean of 16 x 16 pixels sees next to nothing of them. The outermost 2 px are left out: Nori has no
+samples beyond the picture, so there its filter is cut off.
 
 The noise of the mean over a block of n pixels, N samples a pixel:
 - Ours: the sum of the pixels' squared standard errors / n^2.
 - The reference's: a splatted sample spreads a total weight of 1 (to 1.4 %, the ripple of the pixels' grid) over the
   pixels around it, so a block's mean is that of all samples in it, whose positions are uniform in their pixels: its
-  variance is the sum over pixels of Var_box / (N n^2), with Var_box of one sample somewhere in the pixel. (Samples at the
-  block's rim count in part, which can only make it smaller.) We know Var_gauss, of one sample under the pixel filter:
-  our squared standard error times our number of samples, which must be independent ones for that. The Gaussian is
-  wider than the box, so Var_gauss also holds how the picture itself changes within a pixel or so: where that is
-  nothing the two are equal, and elsewhere Var_gauss is the larger, so that the test loses power and gains no alarms.
-- From the reference itself, as a check of that: in each block the means of 4 x 4 pixels of the difference, less a plane.
-  What is left has 13 degrees of freedom, too few to judge single blocks at the level needed. So only its median ratio
-  to what the estimates above predict is given, as `noise_ratio`, where the prediction knows that our noise is white and
-  the reference's correlated by Nori's filter. About 1 where noise is due to light; below 1 where it is due to edges.
-- There are two cases in which our samples do not tell the reference's noise. It may have been sampled in another way (a
-  sphere light over its whole surface, say): then the median above is beyond SAMPLED_OTHERWISE. Or few samples find the
-  light, and ours are those that did not: then a few pixels make up most of the block's difference, which is when
-  (sum d^2)^2 / sum d^4 is below FEW_PIXELS, where normal noise would have 85. In these cases, and only there, since it
-  takes what is really different for noise too, the scatter of the reference is taken instead where it is more, that of
-  the block or of the 3 x 3 blocks around it.
-- Where an edge's blur just reaches a pixel, perhaps none of our N samples found it, and our standard error is 0. One more
-  sample could have: so the range of the picture over 5 x 5 pixels / N is added to each pixel's standard error
+  variance is the sum over pixels of Var_box / (N n^2), with Var_box of one sample somewhere in the pixel. (Samples at
+  the block's rim count in part, which can only make it smaller.) We know Var_gauss, of one sample under the pixel
+  filter: our squared standard error times our number of samples, which must be independent ones for that. The
+  Gaussian is wider than the box, so Var_gauss also holds how the picture itself changes within a pixel or so: where
+  that is nothing the two are equal, and elsewhere Var_gauss is the larger, so that the test loses power and gains no
+  alarms.
+- From the reference itself, as a check of that: in each block the means of 4 x 4 pixels of the difference, less a
+  plane. What is left has 13 degrees of freedom, too few to judge single blocks at the level needed. So only its
+  median ratio to what the estimates above predict is given, as `noise_ratio`, where the prediction knows that our
+  noise is white and the reference's correlated by Nori's filter. About 1 where noise is due to light; below 1 where
+  it is due to edges.
+- There are two cases in which our samples do not tell the reference's noise. It may have been sampled in another way
+  (a sphere light over its whole surface, say): then the median above is beyond SAMPLED_OTHERWISE. Or few samples find
+  the light, and ours are those that did not: then a few pixels make up most of the block's difference, which is when
+  (sum d^2)^2 / sum d^4 is below FEW_PIXELS, where normal noise would have 85. In these cases, and only there, since
+  it takes what is really different for noise too, the scatter of the reference is taken instead where it is more,
+  that of the block or of the 3 x 3 blocks around it.
+- Where an edge's blur just reaches a pixel, perhaps none of our N samples found it, and our standard error is 0. One
+  more sample could have: so the range of the picture over 5 x 5 pixels / N is added to each pixel's standard error
   (squared); next to nothing but there.
 - Nori sums in single precision: ROUNDING, relative to the brightest channel, is added.
 
