@@ -248,8 +248,8 @@ def compare(ours, reference, level, least_brightness=0.0, rim_of=None):
 
 
 def is_right_way_round(ours, variance, reference):
-    """Is no mirror image of the reference much more like our picture than the reference itself? `variance`: of a pixel
-    of the difference. A picture that is its own mirror image is the right way round."""
+    """Is no mirror image of the reference much more like our picture than the reference itself? `variance`: of a
+    pixel of the difference. A picture that is its own mirror image is the right way round."""
     difference = [ours - m for m in (reference, reference[:, ::-1], reference[::-1], reference[::-1, ::-1])]
     noise = block_sums(variance, BLOCK) + variance.mean() * BLOCK * BLOCK / 100
     upright, *mirrored = (float(np.mean(block_sums(d, BLOCK) ** 2 / noise)) for d in difference)
