@@ -31,8 +31,10 @@ The noise of the mean over a block of n pixels, N samples a pixel:
   from what was found, too small by more. Its noise must be at least what its radiance implies. Contributions X of
   mean m have variance a m - m^2, where a = E[X^2] / E[X] is the size of the contributions, each weighted by what it
   gives. It is taken from the 3 x 3 blocks around, pooled, which have more finds than one block; m is that of the
-  brighter picture, since both are estimates of the same mean. Where a block's own estimate is larger, that stays.
-  Where the light of a neighbourhood is well sampled, the two are about the same, and little is lost.
+  brighter picture, since both are estimates of the same mean. This is done only where it can matter: finds that a
+  block should have UNSEEN of, it almost surely has some of (all but 5 in 100,000), so that UNSEEN a / (N n) is the
+  most that it can be short of; where its standard error is larger than that, it stays as it is. The mean of the whole
+  picture has all the finds there are, and keeps its standard error too.
 - Where an edge's blur just reaches a pixel, perhaps none of our N samples found it, and our standard error is 0. One
   more sample could have: so the range of the picture over 5 x 5 pixels / N is added to each pixel's standard error
   (squared); next to nothing but there.
@@ -57,6 +59,7 @@ RIM_PX = 2
 ROUNDING = 2e-5
 SAMPLED_OTHERWISE = 1.25
 FEW_PIXELS = 25
+UNSEEN = 10  # finds
 MEDIAN_CHI2_13 = 12.3398  # of the chi-squared distribution with 13 degrees of freedom
 
 
@@ -142,10 +145,14 @@ FACTOR_NORI = scatter_factor(nori_lag_correlation())
 
 
 def sub_block_scatter(difference):
-    """Mean square (13 degrees of freedom) for each whole block and channel."""
-    h, w = (n // BLOCK for n in difference.shape[:2])
+    """Mean square (13 degrees of freedom) for each block and channel. In place of a block that the picture's edge
+    cuts, the whole one that ends there."""
+    rows, columns = (np.minimum(np.arange(0, n, BLOCK), n - BLOCK)[:, None] + np.arange(BLOCK)
+                     for n in difference.shape[:2])
+    h, w = len(rows), len(columns)
     side = BLOCK // SUB_BLOCK
-    means = difference[:h * BLOCK, :w * BLOCK].reshape(h, side, SUB_BLOCK, w, side, SUB_BLOCK, 3).mean(axis=(2, 5))
+    whole_blocks = difference[np.ix_(rows.ravel(), columns.ravel())]
+    means = whole_blocks.reshape(h, side, SUB_BLOCK, w, side, SUB_BLOCK, 3).mean(axis=(2, 5))
     flat = means.transpose(0, 2, 4, 1, 3)
     return np.sum((flat.reshape(h, w, 3, side * side) @ plane_remover()) ** 2, axis=3) / 13
 
@@ -169,11 +176,13 @@ def z_of(difference, variance):
         return np.where(difference == 0, 0.0, difference / np.sqrt(variance))
 
 
-def variance_by_size(sums_of_squares, sums, mean, samples):
-    """Of means over blocks of `samples` samples, by the size of the contributions around. All: blocks."""
+def variance_by_size(told, sums_of_squares, sums, mean, samples):
+    """`told`, the variances of means over blocks of `samples` samples, or what the size of the contributions around
+    implies where some may be unseen. All: blocks."""
     first = smoothed(sums)
     size = np.divide(smoothed(sums_of_squares), first, out=np.zeros_like(first), where=first > 0)
-    return np.maximum(size * mean - mean ** 2, 0) / samples
+    can_be_short = UNSEEN * size / samples > np.sqrt(told)
+    return np.where(can_be_short, np.maximum(told, (size * mean - mean ** 2) / samples), told)
 
 
 def compare(ours, reference, level, least_brightness=0.0, rim_of=None):
@@ -188,8 +197,7 @@ def compare(ours, reference, level, least_brightness=0.0, rim_of=None):
         pixels, stderr = inner(picture.pixels), inner(picture.stderr)
         told = block_sums(stderr ** 2 + (local_range(pixels) / picture.spp) ** 2, BLOCK) / counts ** 2
         squares = block_sums(picture.spp * stderr ** 2 + pixels ** 2, BLOCK)
-        by_size = variance_by_size(squares, block_sums(pixels, BLOCK), mean, counts * picture.spp)
-        return told, np.maximum(told, by_size)
+        return told, variance_by_size(told, squares, block_sums(pixels, BLOCK), mean, counts * picture.spp)
 
     pixels, reference_pixels = inner(ours.pixels), inner(reference.pixels)
     counts = block_sums(np.ones_like(pixels), BLOCK)
@@ -205,16 +213,16 @@ def compare(ours, reference, level, least_brightness=0.0, rim_of=None):
         reference_told, reference_variance = variances(reference)
 
     pixel_difference = pixels - reference_pixels
-    scatter = sub_block_scatter(pixel_difference)
-    h, w = scatter.shape[:2]
-    predicted = FACTOR_WHITE * ours_told[:h, :w] + factor * reference_told[:h, :w]
-    is_noisy = predicted > 100 * rounding[:h, :w]
+    scatter = sub_block_scatter(pixel_difference) * BLOCK ** 2 / counts
+    predicted = FACTOR_WHITE * ours_told + factor * reference_told
+    is_noisy = predicted > 100 * rounding
     ratio = np.median(scatter[is_noisy] / predicted[is_noisy]) / (MEDIAN_CHI2_13 / 13) if is_noisy.any() else math.nan
     is_few = block_sums(pixel_difference ** 2, BLOCK) ** 2 < FEW_PIXELS * block_sums(pixel_difference ** 4, BLOCK)
     is_untold = is_few | bool(ratio > SAMPLED_OTHERWISE)
-    own = np.maximum(scatter - FACTOR_WHITE * ours_told[:h, :w], 0) / factor
-    own = np.pad(np.maximum(own, smoothed(own)), [(0, n - m) for n, m in zip(counts.shape, own.shape)], mode="edge")
-    reference_variance = np.where(is_untold, np.maximum(reference_variance, own), reference_variance)
+    own = np.maximum(scatter - FACTOR_WHITE * ours_told, 0) / factor
+    own = np.maximum(own, smoothed(own))
+    reference_told, reference_variance = (np.where(is_untold, np.maximum(v, own), v)
+                                          for v in (reference_told, reference_variance))
 
     total = ours_variance + reference_variance + rounding
     brightest = pixels.max(axis=2, keepdims=True)
@@ -228,7 +236,8 @@ def compare(ours, reference, level, least_brightness=0.0, rim_of=None):
     area = area / area.sum(axis=(0, 1))
     whole = np.sum(area * difference, axis=(0, 1))
     whole_reference = np.sum(area * block_sums(reference_pixels, BLOCK) / counts, axis=(0, 1))
-    whole_variance = np.sum(area ** 2 * (total - rounding), axis=(0, 1)) + (ROUNDING * whole_reference.max()) ** 2
+    whole_variance = np.sum(area ** 2 * (ours_told + reference_told), axis=(0, 1))
+    whole_variance += (ROUNDING * whole_reference.max()) ** 2
     whole_z = z_of(whole, whole_variance)
     channel = int(np.argmax(np.abs(whole_z)))
     unit = whole_reference[channel] or math.inf
