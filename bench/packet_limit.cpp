@@ -126,7 +126,9 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   const auto block = std::make_unique<SampleBlock>();
   const auto recording_block = std::make_unique<SampleBlock>();
   Recording camera, bounces;
-  const std::function<void(const SampleBlock&, int)> record = [&](const SampleBlock& b, int vertex) {
+  const std::function<void(const SampleBlock&, int, int)> record = [&](const SampleBlock& b, int vertex,
+                                                                       int bsdf_sample) {
+    if (vertex == 0 && bsdf_sample > 0) return;  // The same camera rays again.
     (vertex == 0 ? camera : bounces).append(b);
   };
   recording_block->on_vertex = &record;

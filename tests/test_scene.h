@@ -5,35 +5,16 @@
 #include "render/render.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
+#include "support/temporary_folder.h"
 
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <stdlib.h>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace etendue {
-
-/// A folder that goes with its test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "etendue_test_XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A file that lies beside the scene: an OBJ.
 struct SceneFile {
@@ -42,7 +23,7 @@ struct SceneFile {
 
 /// Loads `<scene>` + body + `</scene>`.
 inline LoadedScene load_scene_text(const std::string& body, const std::vector<SceneFile>& files = {}) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const SceneFile& file : files) std::ofstream(folder.path() / file.name) << file.text;
   std::ofstream(folder.path() / "scene.xml") << "<scene>\n" << body << "</scene>\n";
   return load_scene(read_nori_xml(folder.path() / "scene.xml", Dialect::nori_2012));

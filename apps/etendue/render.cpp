@@ -7,6 +7,7 @@
 #include "progress.h"
 #include "render/thread_limit.h"
 #include "replay.h"
+#include "run_options.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
 
@@ -27,10 +28,9 @@ namespace {
 struct Options {
   std::string scene_file;
   std::vector<std::string> outputs;
-  std::string integrator, sampler, isa, dialect, stats_file, replay;
+  std::string integrator, sampler, stats_file, replay;
   std::optional<int> samples_per_pixel, replicates;
-  std::uint64_t seed = 0;
-  int threads = 0;
+  RunOptions run;
   bool is_quiet = false, is_strict = false, is_in_sample_order = false;
 };
 
@@ -65,9 +65,9 @@ RenderSettings settings_for(const Options& options, const LoadedScene& loaded) {
         "choose a number that divides {}, or take --spp {}",
         settings.replicates, settings.samples_per_pixel, settings.replicates, settings.samples_per_pixel,
         (settings.samples_per_pixel / settings.replicates + 1) * std::int64_t(settings.replicates)));
-  settings.seed = options.seed;
-  settings.threads = options.threads;
-  settings.isa = options.isa.empty() ? available_isas().back() : isa_from_name(options.isa);
+  settings.seed = options.run.seed;
+  settings.threads = options.run.threads;
+  settings.isa = options.run.isa();
   settings.is_reordering = !options.is_in_sample_order;
   return settings;
 }
@@ -197,42 +197,40 @@ std::string replay_command(const Options& options, const InvalidSample& sample) 
   if (!options.sampler.empty()) add("--sampler", options.sampler);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
   if (options.replicates) add("--replicates", *options.replicates);
-  if (options.seed != 0) add("--seed", options.seed);
-  if (!options.dialect.empty()) add("--dialect", options.dialect);
+  if (options.run.seed != 0) add("--seed", options.run.seed);
+  if (!options.run.dialect_name.empty()) add("--dialect", options.run.dialect_name);
   add("--replay", fmt::format("{},{},{},{}", sample.x, sample.y, sample.replicate, sample.index));
   return command;
 }
 
 void report_invalid(const Options& options, const RenderResult& result) {
   if (result.counts.invalid_samples == 0) return;
-  fmt::print(stderr, "warning: {} of {} samples were not finite or negative; each counts as 0 in its pixel\n",
+  fmt::print(stderr,
+             "warning: {} of {} samples were not finite, or were negative; each counts as 0 in its pixel\n",
              result.counts.invalid_samples, result.counts.samples);
   for (const InvalidSample& sample : result.invalid)
     fmt::print(stderr, "  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y,
                sample.replicate, sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
-  fmt::print(stderr, "to see how the first of them came about:\n  {}\n",
-             replay_command(options, result.invalid.front()));
+  fmt::print(
+      stderr,
+      "to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
+      replay_command(options, result.invalid.front()));
 }
 
 int run(const Options& options) {
   for (const std::string& output : options.outputs) check_writable(output);
   if (!options.stats_file.empty()) check_destination(options.stats_file);
-  const std::optional<Dialect> dialect =
-      options.dialect.empty() ? std::nullopt : std::optional(dialect_from_name(options.dialect));
-  const SceneDesc description = read_nori_xml(options.scene_file, dialect);
-  const ThreadLimit thread_limit(options.threads);
+  const SceneDesc description = read_nori_xml(options.scene_file, options.run.dialect());
+  const ThreadLimit thread_limit(options.run.threads);
   LoadedScene loaded = load_scene(description);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
   std::vector<UnreadKey> unread;
   settings.integrator = integrator_for(options, loaded, description.dialect, unread);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
-  if (const std::int32_t unseen = loaded.scene.lights.dirac_count();
-      unseen > 0 && settings.integrator.needs_lights() && !settings.integrator.rules.has_light_samples())
-    loaded.warnings.push_back(
-        fmt::format("{} samples no lights, so {} point, spot or directional light{} will not shine\n"
-                    "take light, mis, path_ems or path_mis",
-                    settings.integrator.name, unseen, unseen == 1 ? "" : "s"));
+  if (const std::string unseen = unseen_lights(settings.integrator, loaded.scene.lights.dirac_count());
+      !unseen.empty())
+    loaded.warnings.push_back(unseen);
   for (const UnreadKey& key : unread) loaded.warnings.push_back(key.message);
   warn(options, loaded.warnings);
   if (!options.replay.empty()) {
@@ -240,7 +238,7 @@ int run(const Options& options) {
     fmt::print("{}", describe(loaded.scene, sample, replay(loaded.scene, settings, sample)));
     return done;
   }
-  const int threads = options.threads > 0 ? options.threads : available_threads();
+  const int threads = options.run.threads > 0 ? options.run.threads : available_threads();
   if (!options.is_quiet)
     fmt::print(stderr, "{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n",
                options.scene_file, dialect_name(description.dialect), description.dialect_reason,
@@ -305,18 +303,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--replicates", options->replicates,
                       "Independent parts that the samples of a pixel are split into, from which its error is "
                       "estimated; must divide --spp [largest divisor up to 8]");
-  command->add_option("--seed", options->seed, "Another seed: other random numbers")
-      ->capture_default_str()
-      ->check([](const std::string& text) {  // CLI11 would wrap a negative number around.
-        return text.starts_with('-') ? fmt::format("{} is negative; expected a whole number from 0 on", text)
-                                     : "";
-      });
-  command->add_option("--threads", options->threads, "Threads; 0: all cores")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 4096));
-  command->add_option("--isa", options->isa, "Instruction set: scalar, v2, v3 or v4 [the widest here]");
+  add_run_options(*command, options->run);
   command->add_option("--stats", options->stats_file, "JSON file for settings, times and counts");
-  command->add_option("--dialect", options->dialect, "Read the scene as nori-2012, nori-eth or nori");
   command->add_option("--replay", options->replay,
                       "X,Y,REPLICATE,SAMPLE: compute only this sample, and print each step of it");
   command->add_flag("--quiet", options->is_quiet,

@@ -43,8 +43,10 @@ std::string bsdf_sample_text(const SampleTrace::BsdfSample& sample) {
       sample.is_followed ? "goes on" : "ends");
 }
 
-std::string vertex_text(const Scene& scene, const SampleTrace::Vertex& vertex, std::size_t number) {
-  std::string all = fmt::format("vertex {}\n", number);
+std::string vertex_text(const Scene& scene, const SampleTrace::Vertex& vertex) {
+  std::string all = vertex.branch == 0
+                        ? fmt::format("vertex {}\n", vertex.number)
+                        : fmt::format("vertex {}, BSDF sample {}\n", vertex.number, vertex.branch);
   switch (vertex.kind) {
     case SampleTrace::Vertex::Kind::nothing:
       all += "  hit               nothing\n";
@@ -97,8 +99,7 @@ std::string describe(const Scene& scene, const SampleId& sample, const SampleTra
       "  direction         {}\n",
       sample.x, sample.y, sample.replicate, sample.index, trace.x_px, trace.y_px, text(trace.ray_origin),
       text(trace.ray_direction));
-  for (std::size_t number = 0; number < trace.vertices.size(); ++number)
-    all += vertex_text(scene, trace.vertices[number], number);
+  for (const SampleTrace::Vertex& vertex : trace.vertices) all += vertex_text(scene, vertex);
   return all + fmt::format("radiance            {}\n", text(trace.radiance));
 }
 

@@ -3,6 +3,7 @@
 #include "film/temporary_file.h"
 #include "noritest/noritest.h"
 #include "render/thread_limit.h"
+#include "run_options.h"
 #include "scenefile/dialect.h"
 
 #include <cmath>
@@ -19,9 +20,8 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::vector<std::string> files;
-  std::string json_file, isa, dialect, sampler = "sobol";
-  std::uint64_t seed = 0;
-  int threads = 0;
+  std::string json_file, sampler = "sobol";
+  RunOptions run;
   bool is_quiet = false;
 };
 
@@ -79,9 +79,7 @@ Json to_json(const std::string& file, int number, const CaseResult& result) {
 
 void run_file(const Options& options, const TestSettings& settings, const std::string& file, Counts& counts,
               Json& all) {
-  const std::optional<Dialect> dialect =
-      options.dialect.empty() ? std::nullopt : std::optional(dialect_from_name(options.dialect));
-  const SceneDesc test = read_test_file(file, dialect);
+  const SceneDesc test = read_test_file(file, options.run.dialect());
   if (!options.is_quiet) fmt::print("{}: {} ({})\n", file, dialect_name(test.dialect), test.dialect_reason);
   int number = 0;
   std::size_t warned = 0;
@@ -120,11 +118,9 @@ void print_summary(const Options& options, const Counts& counts) {
 
 int run(const Options& options) {
   if (!options.json_file.empty()) check_destination(options.json_file);
-  const TestSettings settings{options.seed,
-                              options.isa.empty() ? available_isas().back() : isa_from_name(options.isa),
-                              sampler_from_name(options.sampler)};
-  if (!options.dialect.empty()) dialect_from_name(options.dialect);
-  const ThreadLimit thread_limit(options.threads);
+  const TestSettings settings{options.run.seed, options.run.isa(), sampler_from_name(options.sampler)};
+  options.run.dialect();  // An unknown one is an error once, not for each file.
+  const ThreadLimit thread_limit(options.run.threads);
   Counts counts;
   Json all = Json::array();
   for (const std::string& file : options.files) {
@@ -156,21 +152,11 @@ void add_test_command(CLI::App& app, int& exit_code) {
   command->add_option("FILE", options->files, "Test files")->required();
   command->add_option("--json", options->json_file, "JSON file with an entry for each case")
       ->allow_extra_args(false);
-  command->add_option("--seed", options->seed, "Another seed: other random numbers")
-      ->capture_default_str()
-      ->check([](const std::string& text) {  // CLI11 would wrap a negative number around.
-        return text.starts_with('-') ? fmt::format("{} is negative; expected a whole number from 0 on", text)
-                                     : "";
-      });
-  command->add_option("--threads", options->threads, "Threads; 0: all cores")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 4096));
-  command->add_option("--isa", options->isa, "Instruction set: scalar, v2, v3 or v4 [the widest here]");
+  add_run_options(*command, options->run);
   command
       ->add_option("--sampler", options->sampler,
                    "sobol: fewer correct files fail than their level says; independent: exactly as many")
       ->capture_default_str();
-  command->add_option("--dialect", options->dialect, "Read the files as nori-2012, nori-eth or nori");
   command->add_flag("--quiet", options->is_quiet, "Print only cases that fail, and the summary");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

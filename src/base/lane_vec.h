@@ -1,4 +1,4 @@
-// Choosing between vectors and colours lane by lane.
+// Vectors and colours over lanes: chosen between, looked up.
 #pragma once
 
 #include "base/color.h"
@@ -15,6 +15,12 @@ Vec3<F> select(const Mask<F>& m, const Vec3<F>& a, const Vec3<F>& b) {
 template <class F>
 Color<F> select(const Mask<F>& m, const Color<F>& a, const Color<F>& b) {
   return {select(m, a.r, b.r), select(m, a.g, b.g), select(m, a.b, b.b)};
+}
+
+/// Lanes of three floats that lie one after the other: first[at], first[at + 1], first[at + 2].
+template <class F>
+Vec3<F> gather_vec3(const float* first, const Int<F>& at) {
+  return {gather(first, at), gather(first + 1, at), gather(first + 2, at)};
 }
 
 template <class F>

@@ -10,7 +10,7 @@ namespace etendue {
 struct RefractiveIndices {
   float inside_over_outside = 1, outside_over_inside = 1;
 
-  /// For light that comes from outside (or from inside): the index of the other side over that of its own.
+  /// For a viewer outside (or inside): the index of the other side over that of the viewer's.
   template <class F>
   F across(const Mask<F>& from_outside) const {
     return select(from_outside, F(inside_over_outside), F(outside_over_inside));

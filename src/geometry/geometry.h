@@ -1,6 +1,7 @@
 // All shapes of a scene in shared tables, addressed by the ids that ray casting returns.
 #pragma once
 
+#include "base/lane_vec.h"
 #include "base/simd_math.h"
 #include "base/vec.h"
 #include "geometry/mesh.h"
@@ -73,7 +74,7 @@ Vec3<F> interpolate_normal(const Geometry& geometry, const Int<F>& geometry_id, 
   const float* normals = &geometry.normals[0].x;
   const auto normal = [&](int corner) {
     const Int<F> at = gather(indices + corner, triangle * Int<F>(3)) * Int<F>(3);
-    return Vec3<F>{gather(normals, at), gather(normals + 1, at), gather(normals + 2, at)};
+    return gather_vec3<F>(normals, at);
   };
   const F w = F(1) - barycentric.x - barycentric.y;
   return normal(0) * w + normal(1) * barycentric.x + normal(2) * barycentric.y;

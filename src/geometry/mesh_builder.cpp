@@ -1,5 +1,6 @@
 #include "geometry/mesh_builder.h"
 
+#include "base/reach.h"
 #include "geometry/mesh_text.h"
 
 #include <algorithm>
@@ -84,6 +85,9 @@ void MeshBuilder::add_triangle(std::size_t face, std::array<Corner, 3> corners) 
     ++mesh_.dropped_triangles;
     return;
   }
+  if (!is_within_reach(p0) || !is_within_reach(p1) || !is_within_reach(p2))
+    throw errors_.at_face(face, "a triangle with a corner beyond 1e15 m from the origin",
+                          "scale the mesh down, or move it nearer with toWorld");
   if (double_area_sq > std::numeric_limits<float>::max())
     throw errors_.at_face(face, "a triangle too large for single precision",
                           "scale the scene down, so that no area exceeds 1e18 square metres");

@@ -77,7 +77,8 @@ class MeshBuilder {
   void reserve_triangles(std::size_t count) { mesh_.indices.reserve(3 * count); }
 
   /// Three corners or more, each of which exists. Throws for a triangle whose area (above 9e18 m^2) a float
-  /// cannot hold squared and for a normal without direction that a triangle uses.
+  /// cannot hold squared, for one with a corner out of reach (base/reach.h) and for a normal without
+  /// direction that a triangle uses.
   void add_face(std::size_t face, std::span<const Corner> corners);
 
   /// Throws, at face 0, where no triangle has an area.

@@ -27,13 +27,16 @@ void closest_hits(const Scene& scene, SampleBlock& block, Coherence coherence) {
   block.clock.finish(Stage::closest_hits);
 }
 
-/// Of the rays that pass through the medium, some scatter before they hit anything.
+/// Of the rays that pass through the medium, some scatter before they hit anything. `number`: of the BSDF
+/// sample along which they come.
 template <class F>
-[[gnu::noinline]] void fly_through_medium(const Scene& scene, SampleBlock& block, int vertex) {
+[[gnu::noinline]] void fly_through_medium(const Scene& scene, SampleBlock& block, const PathRules& rules,
+                                          int vertex, int number) {
   PathColumns& path = block.path;
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
-    const F u_flight =
-        to_unit_float(sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex)).y);
+    const int count = vertex == 0 ? 1 : rules.bsdf_samples;
+    const F u_flight = to_unit_float(
+        sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex), number, count).y);
     const auto flight = scene.medium->sample_flight<F>(
         load_lanes<F>(path.ray.origin, i), load_lanes<F>(path.ray.direction, i),
         load_lanes<F>(&path.ray.t_near[i]), load_lanes<F>(&path.hit.t[i]), u_flight);

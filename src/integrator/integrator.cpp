@@ -181,4 +181,12 @@ IntegratorSettings integrator_from_name(std::string_view name) {
   return settings_of(*meaning);
 }
 
+std::string unseen_lights(const IntegratorSettings& integrator, int dirac_lights) {
+  if (dirac_lights == 0 || !integrator.needs_lights() || integrator.rules.has_light_samples()) return "";
+  return fmt::format(
+      "{} samples no lights, so {} point, spot or directional light{} will not shine\n"
+      "take light, mis, path_ems or path_mis",
+      integrator.name, dirac_lights, dirac_lights == 1 ? "" : "s");
+}
+
 }  // namespace etendue

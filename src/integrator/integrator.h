@@ -9,6 +9,7 @@
 #include "integrator/unlit_rules.h"
 #include "scenefile/parameters.h"
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -35,5 +36,9 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
                                    std::vector<UnreadKey>& unread);
 /// From the command line: a name, its parameters at their defaults. `direct` is BRDF sampling.
 IntegratorSettings integrator_from_name(std::string_view name);
+
+/// A warning for where the integrator cannot see the Dirac lights (point, spot, directional) that a scene
+/// has; else empty.
+std::string unseen_lights(const IntegratorSettings& integrator, int dirac_lights);
 
 }  // namespace etendue

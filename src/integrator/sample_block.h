@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 
 namespace etendue {
 
@@ -90,16 +91,16 @@ struct SampleBlock {
   ColorColumn unshadowed;
   Column<std::int32_t> shadow_is_needed, shadow_is_free;
   Column<std::int32_t> aim;    ///< light * light_pieces + piece; after aiming, the bin.
-  Column<std::int32_t> order;  ///< Of tracing: rows of `path`, then -1.
+  Column<std::int32_t> order;  ///< Rows of `path`: of shadow rays as they are traced, then -1; of paths kept.
   int shadow_count = 0;        ///< 0 where no light has been sampled since the last vertex.
 
   RayColumns next_ray;  ///< Along the direction that the BSDF was sampled for.
 
   BlockCounts counts;
   StageClock clock;
-  /// Called with the number of each vertex once its samples have been taken, where set: benchmarks and
-  /// replays look on.
-  const std::function<void(const SampleBlock&, int vertex)>* on_vertex = nullptr;
+  /// Called where set, once the samples of a vertex have been taken, with the numbers of the vertex and of
+  /// the BSDF sample (of several, each goes on to a vertex of its own): benchmarks and replays look on.
+  const std::function<void(const SampleBlock&, int vertex, int bsdf_sample)>* on_vertex = nullptr;
 };
 
 /// Adds to the radiance of the samples that the paths i, i + 1 ... belong to.
@@ -116,6 +117,14 @@ void add_radiance(SampleBlock& block, int i, const Mask<F>& m, const Color<F>& a
   add(block.radiance.r.data(), added.r);
   add(block.radiance.g.data(), added.g);
   add(block.radiance.b.data(), added.b);
+}
+
+/// Adds NaN where a computation has lost its way, so that the sum tells of it: such a sample is counted and
+/// reported, never dropped.
+template <class F>
+void add_lost(SampleBlock& block, int i, const Mask<F>& m) {
+  const F nan(std::numeric_limits<float>::quiet_NaN());
+  if (any(m)) add_radiance<F>(block, i, m, Color<F>{nan, nan, nan});
 }
 
 }  // namespace etendue

@@ -29,7 +29,7 @@ F ray_clearance(const Vec3<F>& position, const F& distance) {
 template <class F>
 struct HitNormals {
   Vec3<F> ng;  ///< Unit.
-  Vec3<F> ns;  ///< Unit; ng where the shape has no vertex normals.
+  Vec3<F> ns;  ///< Unit; ng where the shape has no vertex normals, or those around the place cancel.
 
   HitNormals(const Scene& scene, const HitColumns& hits, int i, const Mask<F>& is_hit)
       : ng(normalize(load_lanes<F>(hits.ng, i))), ns(ng) {
@@ -39,9 +39,11 @@ struct HitNormals {
         mask_and(is_hit, equal(gather(scene.geometry.has_normals.data(), geometry), Int<F>(1)));
     if (!any(is_smooth)) return;
     const Vec2<F> barycentric{load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])};
-    const Vec3<F> smooth = normalize(interpolate_normal<F>(
-        scene.geometry, geometry, load_lanes<Int<F>>(&hits.primitive[i]), barycentric, is_smooth));
-    ns = select(is_smooth, smooth, ng);
+    const Vec3<F> smooth = interpolate_normal<F>(
+        scene.geometry, geometry, load_lanes<Int<F>>(&hits.primitive[i]), barycentric, is_smooth);
+    const F size_sq = dot(smooth, smooth);
+    constexpr float cancelled = 1e-12f;
+    ns = select(mask_and(is_smooth, size_sq > F(cancelled)), smooth * (F(1) / sqrt(size_sq)), ng);
   }
 };
 

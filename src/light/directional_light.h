@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/color.h"
+#include "base/lane_vec.h"
 #include "light/light_sample.h"
 #include "scenefile/parameters.h"
 
@@ -22,9 +23,7 @@ class DirectionalLights {
   template <class F>
   LightSample<F> sample(const Sphere& scene_bounds, const Int<F>& row, const Vec3<F>& reference,
                         const Vec2<UInt<F>>& /*u*/, const Mask<F>& m) const {
-    const float* field = &directions_[0].x;
-    const Int<F> at = row * Int<F>(3);
-    const Vec3<F> wi = -Vec3<F>{gather(field, at), gather(field + 1, at), gather(field + 2, at)};
+    const Vec3<F> wi = -gather_vec3<F>(&directions_[0].x, row * Int<F>(3));
     return light_sample_towards<F>(wi, beyond_scene(scene_bounds, reference, wi), {F(1), F(1), F(1)},
                                    dirac_pdf<F>(), m);
   }

@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/frame.h"
+#include "base/lane_vec.h"
 #include "base/lookup_table.h"
 #include "base/warp.h"
 #include "light/light_sample.h"
@@ -28,7 +29,7 @@ class DistantDiskLights {
   LightSample<F> sample(const Sphere& scene_bounds, const Int<F>& row, const Vec3<F>& reference,
                         const Vec2<UInt<F>>& u, const Mask<F>& m) const {
     const Int<F> at = row * Int<F>(3);
-    const Vec3<F> axis{gather(axes_.data(), at), gather(axes_.data() + 1, at), gather(axes_.data() + 2, at)};
+    const Vec3<F> axis = gather_vec3<F>(axes_.data(), at);
     const F one_minus_cos_max = one_minus_cos_max_.at(row);
     const Vec2<F> u_cone{to_unit_float(u.x), to_unit_float(u.y)};
     const Vec3<F> wi = Frame<F>(axis).world_from_local(square_to_uniform_cone(u_cone, one_minus_cos_max));

@@ -63,8 +63,7 @@ Envmap::Value<F> Envmap::at(const Vec3<F>& d, const Mask<F>& m) const {
   const F y = select(m, v * F(float(height_)) + F(0.5f), F(0.5f));
   // A direction that is NaN must give a NaN, not a look-up outside of the table.
   const auto whole = [](const F& at, std::int32_t most) {
-    const I i = to_int(at), at_most = select(less(i, I(most)), i, I(most));
-    return select(less(at_most, I(0)), I(0), at_most);
+    return to_int(min(select(at >= F(0), at, F(0)), F(float(most))));
   };
   const I column = whole(x, width_ - 1), row = whole(y, height_);
   const Place<F> place{column, row, min(x - to_float(column), F(1)), y - to_float(row)};

@@ -116,16 +116,16 @@ class Lights : public LightTables {
  private:
   /// Apart, so that the code of all kinds does not weigh on scenes with area lights only.
   template <class F>
-  [[gnu::noinline]] LightSample<F> sample_any_kind(const Int<F>& light,
-                                                   const F& pmf, const Vec3<F>& reference,
-                                                   const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+  [[gnu::noinline]] LightSample<F> sample_any_kind(const Int<F>& light, const F& pmf,
+                                                   const Vec3<F>& reference, const Vec2<UInt<F>>& u,
+                                                   const Mask<F>& m) const {
     LightSample<F> result = no_light_sample<F>();
     const Color<F> scale = strength<F>(light, m);
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       LightSample<F> sample = no_light_sample<F>();
       if constexpr (AreaLightTable<std::remove_cvref_t<decltype(table)>>) {
-        sample = light_sample_at<F>(table.template sample_position<F>(row, reference, u),
-                                    light, scale, pmf, reference, lanes);
+        sample = light_sample_at<F>(table.template sample_position<F>(row, reference, u), light, scale, pmf,
+                                    reference, lanes);
       } else {
         sample = table.template sample<F>(scene_bounds_, row, reference, u, lanes);
         sample.radiance_over_pdf = sample.radiance_over_pdf * scale * (F(1) / pmf);

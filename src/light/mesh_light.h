@@ -1,6 +1,7 @@
 // Area lights on triangle meshes of any size: a triangle by area, then a point uniform within it.
 #pragma once
 
+#include "base/lane_vec.h"
 #include "base/lookup_table.h"
 #include "base/simd_math.h"
 #include "base/warp.h"
@@ -43,11 +44,8 @@ class MeshLights {
 
     const float* corner = triangles_.data();
     const I at = (first + triangle) * I(9);
-    const auto vec = [&](int offset) {
-      return Vec3<F>{gather(corner + offset, at), gather(corner + offset + 1, at),
-                     gather(corner + offset + 2, at)};
-    };
-    const Vec3<F> origin = vec(0), edge_1 = vec(3), edge_2 = vec(6);
+    const Vec3<F> origin = gather_vec3<F>(corner, at), edge_1 = gather_vec3<F>(corner + 3, at),
+                  edge_2 = gather_vec3<F>(corner + 6, at);
     const Vec2<F> barycentric = square_to_triangle(u_triangle);
 
     LightPoint<F> point;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/color.h"
+#include "base/lane_vec.h"
 #include "light/light_sample.h"
 #include "scenefile/parameters.h"
 
@@ -21,9 +22,7 @@ class PointLights {
   template <class F>
   LightSample<F> sample(const Sphere& /*scene_bounds*/, const Int<F>& row, const Vec3<F>& reference,
                         const Vec2<UInt<F>>& /*u*/, const Mask<F>& m) const {
-    const float* field = &positions_[0].x;
-    const Int<F> at = row * Int<F>(3);
-    const Vec3<F> position{gather(field, at), gather(field + 1, at), gather(field + 2, at)};
+    const Vec3<F> position = gather_vec3<F>(&positions_[0].x, row * Int<F>(3));
     const Vec3<F> to_light = position - reference;
     const F inv_distance_sq = F(1) / length_sq(to_light);
     return light_sample_towards<F>(to_light * sqrt(inv_distance_sq), position,

@@ -1,6 +1,7 @@
 // Rectangular (and parallelogram) area lights: a point uniform over the whole.
 #pragma once
 
+#include "base/lane_vec.h"
 #include "base/lookup_table.h"
 #include "base/simd_math.h"
 #include "geometry/geometry.h"
@@ -26,10 +27,7 @@ class RectangleLights {
   LightPoint<F> sample_position(const Int<F>& row, const Vec3<F>& /*reference*/,
                                 const Vec2<UInt<F>>& u) const {
     const Int<F> at = row * Int<F>(12);
-    const auto vec = [&](int offset) {
-      const float* field = fields_.data() + offset;
-      return Vec3<F>{gather(field, at), gather(field + 1, at), gather(field + 2, at)};
-    };
+    const auto vec = [&](int column) { return gather_vec3<F>(fields_.data() + column, at); };
     const F x = to_unit_float(u.x), y = to_unit_float(u.y);
     const Vec3<F> ng = vec(9);
     const Int<F> piece = to_int(x * F(4)) * Int<F>(4) + to_int(y * F(4));

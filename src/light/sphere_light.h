@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/frame.h"
+#include "base/lane_vec.h"
 #include "base/simd_math.h"
 #include "base/warp.h"
 #include "geometry/geometry.h"
@@ -75,7 +76,7 @@ class SphereLights {
     Cone(const SphereLights& lights, const Int<F>& row, const Vec3<F>& reference) {
       const Int<F> at = row * Int<F>(4);
       const float* field = lights.fields_.data();
-      center = {gather(field, at), gather(field + 1, at), gather(field + 2, at)};
+      center = gather_vec3<F>(field, at);
       radius = gather(field + 3, at);
       const Vec3<F> offset = center - reference;
       const F distance_sq = length_sq(offset);

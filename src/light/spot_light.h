@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/color.h"
+#include "base/lane_vec.h"
 #include "light/light_sample.h"
 #include "scenefile/parameters.h"
 
@@ -30,7 +31,8 @@ class SpotLights {
                         const Vec2<UInt<F>>& /*u*/, const Mask<F>& m) const {
     const Int<F> at = row * Int<F>(columns);
     const auto field = [&](int column) { return gather(fields_.data() + column, at); };
-    const Vec3<F> position{field(0), field(1), field(2)}, axis{field(3), field(4), field(5)};
+    const Vec3<F> position = gather_vec3<F>(fields_.data(), at),
+                  axis = gather_vec3<F>(fields_.data() + 3, at);
     const Vec3<F> to_light = position - reference;
     const F inv_distance_sq = F(1) / length_sq(to_light);
     const Vec3<F> wi = to_light * sqrt(inv_distance_sq);

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <numeric>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -40,7 +41,9 @@ const Plugin chi2test_plugin{
 namespace {
 
 constexpr double pi_d = std::numbers::pi;
-constexpr double allowance_of_empty_cells = 1e-5;  ///< Of the number of samples.
+constexpr int quadrature_points = 15;                         ///< Along each side of a cell, at first.
+constexpr double allowance_of_empty_cells = 1e-5;             ///< Of the number of samples.
+constexpr std::int64_t most_samples = std::int64_t{1} << 32;  ///< Sample numbers are 32-bit.
 
 struct Chi2Rules {
   int rows, directions;
@@ -81,6 +84,11 @@ Chi2Rules rules_of(const TestRun& run, const Parameters& parameters) {
   if (rules.sample_count < 0) rules.sample_count = 5000 * std::int64_t(rules.cells());
   if (rules.sample_count == 0)
     throw InputError(parameters.location("sampleCount"), "'sampleCount' is 0; nothing would be tested");
+  if (rules.sample_count > most_samples)
+    throw InputError(parameters.location("resolution"),
+                     fmt::format("5000 samples for each of {} cells are more than the {} that can be drawn",
+                                 rules.cells(), most_samples),
+                     "state a 'sampleCount', or a lower 'resolution'");
   rules.pooling_threshold = parameters.integer("minExpFrequency");
   rules.level = parameters.real("significanceLevel");
   if (!(rules.level > 0 && rules.level < 1))
@@ -102,6 +110,7 @@ bool is_finite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y)
 struct Observed {
   std::vector<double> counts;
   std::int64_t invalid_samples = 0;  ///< With a weight, direction or density that is not a number.
+  double density_sum = 0;            ///< Over all samples, 1/sr.
 };
 
 template <class Model>
@@ -110,7 +119,7 @@ Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, Sa
   constexpr std::int64_t samples_a_task = 16384;
   const RandomSquares u_bsdf(sampler, seed);
   std::atomic<bool> has_dirac{false};
-  tbb::combinable<Observed> parts([&] { return Observed{std::vector<double>(rules.cells()), 0}; });
+  tbb::combinable<Observed> parts([&] { return Observed{std::vector<double>(rules.cells())}; });
   const auto run_task = [&](std::int64_t task) {
     Observed& part = parts.local();
     const std::int64_t end = std::min((task + 1) * samples_a_task, rules.sample_count);
@@ -119,10 +128,12 @@ Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, Sa
       if (sample.weight == Colorf{0, 0, 0}) continue;
       if (std::isinf(sample.pdf_solid_angle)) has_dirac = true;
       const float sum = sample.weight.r + sample.weight.g + sample.weight.b + sample.pdf_solid_angle;
-      if (std::isfinite(sum) && is_finite(sample.wi_local))
+      if (std::isfinite(sum) && is_finite(sample.wi_local)) {
         ++part.counts[rules.cell_of(sample.wi_local)];
-      else
+        part.density_sum += sample.pdf_solid_angle;
+      } else {
         ++part.invalid_samples;
+      }
     }
   };
   tbb::parallel_for(std::int64_t{0}, (rules.sample_count + samples_a_task - 1) / samples_a_task, run_task);
@@ -130,10 +141,11 @@ Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, Sa
     throw InputError(
         "it has a Dirac lobe (mirror reflection or refraction), whose density is infinite: a chi2test cannot "
         "test it\ntest its mean with a ttest instead");
-  Observed all{std::vector<double>(rules.cells()), 0};
+  Observed all{std::vector<double>(rules.cells())};
   parts.combine_each([&](const Observed& part) {
     for (std::size_t c = 0; c < all.counts.size(); ++c) all.counts[c] += part.counts[c];
     all.invalid_samples += part.invalid_samples;
+    all.density_sum += part.density_sum;
   });
   return all;
 }
@@ -141,7 +153,7 @@ Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, Sa
 template <class Model>
 std::vector<double> expect(const Model& model, const Vec3f& wo, const Chi2Rules& rules) {
   // No end of an interval is evaluated, where a horizon would count as above and below.
-  using Rule = boost::math::quadrature::gauss_kronrod<double, 15>;
+  using Rule = boost::math::quadrature::gauss_kronrod<double, quadrature_points>;
   constexpr unsigned most_halvings = 6;
   constexpr double tolerance = 1e-5;
   std::vector<double> counts(rules.cells());
@@ -163,6 +175,20 @@ std::vector<double> expect(const Model& model, const Vec3f& wo, const Chi2Rules&
   return counts;
 }
 
+/// Throws where samples lie so close together that the quadrature's points may have missed the lobe: a
+/// misfit then says nothing about the density.
+void require_resolved(const Observed& observed, const Chi2Rules& rules) {
+  const double count = std::accumulate(observed.counts.begin(), observed.counts.end(), 0.0);
+  const double lobe_sr = count / observed.density_sum;
+  const double resolved_sr = 4 * pi_d / double(rules.cells()) / (quadrature_points * quadrature_points);
+  if (lobe_sr < resolved_sr)
+    throw InputError(
+        fmt::format("its lobe of about {:.2g} sr is too narrow for a chi2test with {} rows of cells, "
+                    "which sees lobes from {:.2g} sr on\n"
+                    "raise 'resolution', or test its mean with a ttest",
+                    lobe_sr, rules.rows, resolved_sr));
+}
+
 void judge(CaseResult& result, const Observed& observed, const std::vector<double>& expected,
            const Chi2Rules& rules) {
   const ChiSquaredTest test =
@@ -180,6 +206,7 @@ void judge(CaseResult& result, const Observed& observed, const std::vector<doubl
   else if (std::isnan(test.p_value))
     result.problem = "the density is not finite, negative, or in fewer than two cells";
   result.is_passed = result.problem.empty() && !is_rejected(result.p_value, rules.level, rules.tests);
+  if (!result.is_passed && observed.invalid_samples == 0) require_resolved(observed, rules);
 }
 
 }  // namespace
@@ -208,7 +235,8 @@ void run_chi2test(TestRun& run) {
         std::visit(
             [&](const auto& model) {
               const auto at_point = model.at(Vec2f{0, 0}, true);
-              judge(measured, observe(at_point, wo, rules, run.settings.sampler, seed), expect(at_point, wo, rules), rules);
+              judge(measured, observe(at_point, wo, rules, run.settings.sampler, seed),
+                    expect(at_point, wo, rules), rules);
             },
             material);
       });

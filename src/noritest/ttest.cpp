@@ -2,7 +2,7 @@
 //
 // The rules are those of Nori's ttest (W. Jakob): the number of samples, the level of the whole file and its
 // Sidak correction, and a least variance. Two are stricter here: samples that are all 0 never pass for
-// another reference, however small, and a sample that is not finite or negative fails its case.
+// another reference, however small, and a sample that is negative or not finite fails its case.
 #include "base/hash.h"
 #include "noritest/case_runner.h"
 #include "noritest/random_squares.h"
@@ -62,7 +62,7 @@ void judge(CaseResult& result, const RunningStatistics& samples, std::int64_t in
   result.p_value = test.p_value;
   if (invalid_samples > 0) {
     result.problem =
-        fmt::format("{} of {} samples are not finite or negative", invalid_samples, samples.count);
+        fmt::format("{} of {} samples are negative or not finite", invalid_samples, samples.count);
   } else if (samples.mean == 0 && samples.m2 == 0 && result.reference != 0) {
     result.p_value = 0;
     result.problem = "all samples are 0";
@@ -76,21 +76,25 @@ void test_scene(TestRun& run, const Object& scene, double reference, std::uint64
   for (const Object& child : scene.children)
     if (child.family == "integrator") result.type = child.type;
   run.run_case(result, [&](CaseResult& measured) {
-    LoadedScene loaded =
-        load_scene({scene, run.test.dialect, run.test.dialect_reason, run.test.directory, {}});
+    const SceneDesc description{scene, run.test.dialect, run.test.dialect_reason, run.test.directory, {}};
+    LoadedScene loaded = load_scene(description);
     std::vector<UnreadKey> unread;
     const IntegratorSettings integrator = loaded.integrator.family.empty()
                                               ? IntegratorSettings{}
                                               : make_integrator(loaded.integrator, run.test.dialect, unread);
     run.warnings.insert(run.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     run.warn(unread);
+    if (const std::string unseen = unseen_lights(integrator, loaded.scene.lights.dirac_count());
+        !unseen.empty())
+      run.warnings.push_back(unseen);
+    if (integrator.needs_lights() && reference != 0) check_has_light(description, loaded.scene);
     const SceneLuminance luminances =
         sample_luminance(loaded.scene, integrator, rules.sample_count, run.settings, seed);
     judge(measured, luminances.samples, luminances.invalid_samples, rules);
   });
 }
 
-/// Luminances of single samples; what is not finite or negative is counted, and is 0.
+/// Luminances of single samples; what is negative or not finite is counted, and is 0.
 struct Samples {
   RunningStatistics luminances;
   std::int64_t invalid = 0;

@@ -37,11 +37,11 @@ std::unique_ptr<SampleBlock> block_of(const RenderSettings& settings, const Samp
 }
 
 SampleTrace::Vertex vertex_of(const Scene& scene, const PathRules& rules, const SampleBlock& block,
-                              int number) {
+                              int number, int branch) {
   const PathColumns& path = block.path;
   const Vertex<F> vertex(scene, path.ray, path.hit, 0);
-  SampleTrace::Vertex trace{SampleTrace::Vertex::Kind::nothing, vertex.position, {}, {}, {},
-                            load_lanes<F>(block.radiance, 0)};
+  SampleTrace::Vertex trace{number, branch, SampleTrace::Vertex::Kind::nothing, vertex.position, {},
+                            {},     {},          load_lanes<F>(block.radiance, 0)};
   if (!vertex.is_there) return trace;
   trace.kind = vertex.is_surface ? SampleTrace::Vertex::Kind::surface : SampleTrace::Vertex::Kind::medium;
   const std::int32_t geometry = path.hit.geometry[0];
@@ -79,8 +79,9 @@ SampleTrace replay(const Scene& scene, const RenderSettings& settings, const Sam
   trace.y_px = float(sample.y) + 0.5f + scene.filter.sample_offset_px(u_film.y);
   trace.ray_origin = load_lanes<F>(block->path.ray.origin, 0);
   trace.ray_direction = load_lanes<F>(block->path.ray.direction, 0);
-  const std::function<void(const SampleBlock&, int)> note = [&](const SampleBlock& at, int number) {
-    trace.vertices.push_back(vertex_of(scene, settings.integrator.rules, at, number));
+  const std::function<void(const SampleBlock&, int, int)> note = [&](const SampleBlock& at, int number,
+                                                                     int branch) {
+    trace.vertices.push_back(vertex_of(scene, settings.integrator.rules, at, number, branch));
   };
   block->on_vertex = &note;
   run_integrator<F>(settings.integrator, scene, *block, false);

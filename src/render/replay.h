@@ -39,6 +39,8 @@ struct SampleTrace {
   };
   /// A place that the path came to.
   struct Vertex {
+    int number;  ///< 0: the first that the camera ray meets.
+    int branch;  ///< Where several BSDF samples leave vertex 0: which of them.
     enum class Kind { surface, medium, nothing } kind;
     Vec3f position;  ///< Not of nothing.
     std::optional<Surface> surface;
@@ -50,7 +52,7 @@ struct SampleTrace {
   float x_px, y_px;  ///< On the film, in pixels from the upper left.
   Vec3f ray_origin, ray_direction;
   std::vector<Vertex> vertices;  ///< Of integrators that trace paths.
-  Colorf radiance;  ///< The sample's, as computed: not finite or negative where that is what went wrong.
+  Colorf radiance;  ///< The sample's, as computed: negative or not finite where that is what went wrong.
 };
 
 /// Runs this one sample with one lane, as the scalar kernel does: to the same bits. Throws InputError for a

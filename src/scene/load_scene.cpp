@@ -25,6 +25,7 @@ class Loader {
   explicit Loader(const SceneDesc& description) : description_(description) {}
 
   LoadedScene load() {
+    const Clock::time_point start = Clock::now();
     const Object& root = description_.root;
     if (root.family != "scene")
       throw InputError(root.location, fmt::format("the root is <{}>, not <scene>", root.family));
@@ -34,21 +35,23 @@ class Loader {
       throw InputError(root.location, "the scene has no camera",
                        "add <camera type=\"perspective\"> with a toWorld transform");
     if (geometry_.count() == 0)
-      throw InputError(root.location, "the scene has no shapes", "add <mesh type=\"obj\"> with a filename");
+      throw InputError(
+          root.location, "the scene has no shapes",
+          "add <mesh type=\"obj\"> with a filename; an environment or a medium alone is not rendered");
     const Sphere bounds = bounding_sphere(geometry_);
     lights_.set_scene_bounds(medium_ ? medium_->bounds_with(bounds) : bounds);
-    const Clock::time_point start = Clock::now();
+    const Clock::time_point start_of_build = Clock::now();
     RayCaster rays(geometry_);
+    const double seconds_build = seconds_since(start_of_build);
     const bool has_textures = std::any_of(materials_.begin(), materials_.end(),
                                           [](const Bsdf& material) { return has_texture(material); });
-    const double seconds_build = seconds_since(start);
     return {
         Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_), std::move(rays),
               std::move(materials_), has_textures, std::move(lights_), medium_, sampler_},
         integrator_ ? *integrator_ : Object{},
         samples_per_pixel_,
         warnings(),
-        seconds_read_,
+        seconds_since(start) - seconds_build,
         seconds_build};
   }
 
@@ -89,9 +92,7 @@ class Loader {
                          "put it inside a <mesh> or <shape>, which then shines");
       add_light(child, description_.directory, lights_, unread_);
     } else {
-      const Clock::time_point start = Clock::now();
       add_shape(child);
-      seconds_read_ += seconds_since(start);
     }
   }
 
@@ -165,7 +166,6 @@ class Loader {
   std::optional<HomogeneousMedium> medium_;
   std::vector<UnreadKey> unread_;
   std::vector<std::string> warnings_;
-  double seconds_read_ = 0;
 };
 
 }  // namespace

@@ -15,8 +15,8 @@ struct LoadedScene {
   Object integrator;  ///< Unread until the render chooses; type empty where the file has none.
   int samples_per_pixel = 16;
   std::vector<std::string> warnings;  ///< Keys that nobody read, triangles without area ...
-  double seconds_read = 0;            ///< Reading and transforming shapes.
-  double seconds_build = 0;           ///< Ray casting's tree and the lights' tables.
+  double seconds_read = 0;   ///< All that is not seconds_build: meshes, textures, the lights' tables.
+  double seconds_build = 0;  ///< Ray casting's tree.
 };
 
 /// Reads the shapes, makes materials and lights, builds the ray caster. Throws InputError for

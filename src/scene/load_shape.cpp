@@ -64,10 +64,11 @@ std::string label(const Object& object, const std::string& fallback) {
   return object.name.empty() ? fallback : object.name;
 }
 
-/// Throws where floats cannot tell the shape's corners apart, or its area is not finite.
-void check_area(const Object& object, const Vec3f& along_x, const Vec3f& along_y) {
+/// Throws where floats cannot tell the shape's corners apart, its area is not finite, or it is out of reach.
+void check_extent(const Object& object, const Vec3f& corner, const Vec3f& along_x, const Vec3f& along_y) {
   const float area_sq = length_sq(cross(along_x, along_y));
-  if (!(area_sq > 0) || !std::isfinite(area_sq))
+  if (!(area_sq > 0) || !std::isfinite(area_sq) || !is_within_reach(corner) ||
+      !is_within_reach(corner + along_x) || !is_within_reach(corner + along_y))
     throw InputError(object.location,
                      fmt::format("this {} has no area that can be computed with", object.type),
                      "it is too small, too large, or too far from the origin for its size");
@@ -148,7 +149,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const Mesh mesh = make_rectangle(transform);
     const Vec3f &corner = mesh.positions[0], along_x = mesh.positions[1] - corner,
                 along_y = mesh.positions[3] - corner;
-    check_area(object, along_x, along_y);
+    check_extent(object, corner, along_x, along_y);
     geometry.add_mesh(mesh, ids);
     if (radiance) {
       // The front stays in front under a mirroring transform, as for the mesh.
@@ -161,8 +162,8 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const Parameters parameters(object, disk_plugin, unread);
     const Disk disk = make_disk(world_from_object(parameters));
     // As far as floats tell the edge from the centre.
-    check_area(object, (disk.center + disk.along_x) - disk.center,
-               (disk.center + disk.along_y) - disk.center);
+    check_extent(object, disk.center, (disk.center + disk.along_x) - disk.center,
+                 (disk.center + disk.along_y) - disk.center);
     geometry.add_disk(disk, ids);
     if (radiance) lights.add(*radiance, label(object, numbered), LightKind::disk, lights.disks.add(disk));
   } else {

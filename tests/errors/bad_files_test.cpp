@@ -1,25 +1,18 @@
 // Damaged and odd files of other projects' test suites: refused with a message that names them, or rendered.
+#include "support/data_folder.h"
 #include "support/program.h"
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <gtest/gtest.h>
 
 namespace etendue::test {
 namespace {
 
-std::filesystem::path data_folder() {
-  const char* given = std::getenv("ETENDUE_TEST_DATA");
-  return (given ? std::filesystem::path(given)
-                : std::filesystem::path(ETENDUE_SOURCE_DIR) / "../shared/data") /
-         "badinput";
-}
-
 std::vector<std::filesystem::path> files_of(const std::string& kind) {
   std::vector<std::filesystem::path> files;
   std::error_code absent;
-  for (const auto& entry : std::filesystem::directory_iterator(data_folder() / kind, absent))
+  for (const auto& entry : std::filesystem::directory_iterator(data_folder() / "badinput" / kind, absent))
     files.push_back(std::filesystem::absolute(entry.path()));
   std::sort(files.begin(), files.end());
   return files;

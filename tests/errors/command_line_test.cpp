@@ -226,7 +226,7 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   const ProgramResult result = run(command);
   ASSERT_EQ(result.exit_code, 0);
   EXPECT_GT(json("s.json").at("invalid_samples"), 0);
-  ASSERT_THAT(result.err, HasSubstr("samples were not finite or negative"));
+  ASSERT_THAT(result.err, HasSubstr("samples were not finite, or were negative"));
   const std::string start =
       "  etendue render scene.xml --integrator mis --spp 8 --replicates 2 --seed 7 --replay ";
   const std::size_t at = result.err.find(start);

@@ -522,7 +522,7 @@ TEST(LightIrradiance, OfLightsAtInfinityIsExact) {
 SceneFile exr_file(const std::string& name, int width, int height, const std::vector<float>& rgb) {
   Image image{width, height, {{"R", {}}, {"G", {}}, {"B", {}}}, {}};
   for (std::size_t i = 0; i < rgb.size(); ++i) image.channels[i % 3].values.push_back(rgb[i]);
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write_exr(folder.path() / name, image);
   std::ifstream stream(folder.path() / name, std::ios::binary);
   return {name, {std::istreambuf_iterator<char>(stream), {}}};

@@ -174,7 +174,7 @@ TEST(PathsAgree, WithAMirrorAndGlass) {
 }
 
 TEST(PathsAgree, UnderAnEnvironmentMapAndAPointLight) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   Image map{8, 4, {{"B", {}}, {"G", {}}, {"R", {}}}, {}};
   for (std::size_t c = 0; c < 3; ++c)
     for (int i = 0; i < 32; ++i) map.channels[c].values.push_back(0.2f + 0.1f * float(c) + (i == 11 ? 8 : 0));

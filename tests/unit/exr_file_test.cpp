@@ -1,5 +1,7 @@
 #include "base/error.h"
 #include "film/image_file.h"
+#include "support/data_folder.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 #include <ImfChannelList.h>
@@ -9,7 +11,6 @@
 #include <ImfTiledOutputFile.h>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -21,22 +22,6 @@ namespace {
 
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-
-fs::path test_data() {
-  const char* given = std::getenv("ETENDUE_TEST_DATA");
-  return given ? fs::path(given) : fs::path(ETENDUE_SOURCE_DIR) / "../shared/data";
-}
-
-/// The message of the InputError that `run` throws.
-template <class Run>
-std::string error_of(Run&& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 class ExrFile : public testing::Test {
  protected:
@@ -183,24 +168,25 @@ TEST_F(ExrFile, ReadsTiledFilesOfEveryLevelMode) {
 TEST_F(ExrFile, RefusesAnImageThatIsNotOne) {
   Image image = small_image();
   image.channels[1].values.pop_back();
-  EXPECT_THAT(error_of([&] { write_exr(file, image); }),
+  EXPECT_THAT(test::error_of([&] { write_exr(file, image); }),
               HasSubstr("channel G has 5 values, the image 3 x 2"));
   image = small_image();
   image.channels[1].name = "R";
-  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("two channels are named 'R'"));
+  EXPECT_THAT(test::error_of([&] { write_exr(file, image); }), HasSubstr("two channels are named 'R'"));
   image.channels[1].name = "";
-  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("EXR allows 1 to 255"));
+  EXPECT_THAT(test::error_of([&] { write_exr(file, image); }), HasSubstr("EXR allows 1 to 255"));
   image = small_image();
   image.metadata.emplace_back("dataWindow", "x");
-  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("EXR itself uses that name"));
+  EXPECT_THAT(test::error_of([&] { write_exr(file, image); }), HasSubstr("EXR itself uses that name"));
   image.metadata.back().first = "seed";
-  EXPECT_THAT(error_of([&] { write_exr(file, image); }), HasSubstr("two metadata fields are named 'seed'"));
-  EXPECT_THAT(error_of([&] { write_exr(file, Image{}); }), HasSubstr("0 x 0"));
+  EXPECT_THAT(test::error_of([&] { write_exr(file, image); }),
+              HasSubstr("two metadata fields are named 'seed'"));
+  EXPECT_THAT(test::error_of([&] { write_exr(file, Image{}); }), HasSubstr("0 x 0"));
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
 TEST_F(ExrFile, AWriteThatFailsNamesTheReasonAndLeavesTheOldFile) {
-  EXPECT_THAT(error_of([&] { write_exr(folder / "none" / "a.exr", small_image()); }),
+  EXPECT_THAT(test::error_of([&] { write_exr(folder / "none" / "a.exr", small_image()); }),
               HasSubstr("a.exr: cannot write: No such file or directory"));
 
   write_exr(file, small_image());
@@ -217,7 +203,7 @@ TEST_F(ExrFile, AWriteThatFailsNamesTheReasonAndLeavesTheOldFile) {
   for (const std::uintmax_t bytes : {std::uintmax_t(100), complete / 2, complete - 1}) {
     const rlimit limit{bytes, old_limit.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);
-    const std::string error = error_of([&] { write_exr(file, large); });
+    const std::string error = test::error_of([&] { write_exr(file, large); });
     setrlimit(RLIMIT_FSIZE, &old_limit);
     EXPECT_THAT(error, HasSubstr("image.exr: cannot write: ")) << bytes;
   }
@@ -227,14 +213,14 @@ TEST_F(ExrFile, AWriteThatFailsNamesTheReasonAndLeavesTheOldFile) {
 }
 
 TEST_F(ExrFile, SaysWhyItCannotRead) {
-  EXPECT_THAT(error_of([&] { read_exr(folder / "none.exr"); }), HasSubstr("there is no such file"));
-  EXPECT_THAT(error_of([&] { read_exr(folder); }), HasSubstr("not a regular file"));
-  EXPECT_THAT(error_of([&] { read_exr("/dev/zero"); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(test::error_of([&] { read_exr(folder / "none.exr"); }), HasSubstr("there is no such file"));
+  EXPECT_THAT(test::error_of([&] { read_exr(folder); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(test::error_of([&] { read_exr("/dev/zero"); }), HasSubstr("not a regular file"));
   write_bytes("");
-  EXPECT_THAT(error_of([&] { read_exr(file); }),
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }),
               HasSubstr("image.exr: cannot read this EXR image: it ends too early"));
   write_bytes("\x89PNG\r\n\x1a\n and so on");
-  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("it is not an EXR file"));
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }), HasSubstr("it is not an EXR file"));
 }
 
 TEST_F(ExrFile, RefusesDeepMultiPartAndOversizedFiles) {
@@ -243,30 +229,32 @@ TEST_F(ExrFile, RefusesDeepMultiPartAndOversizedFiles) {
   std::string bad = good;
   bad[5] |= 0x08;
   write_bytes(bad);
-  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("deep images are not supported"));
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }), HasSubstr("deep images are not supported"));
   bad = good;
   bad[5] |= 0x10;
   write_bytes(bad);
-  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("multi-part files are not supported"));
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }), HasSubstr("multi-part files are not supported"));
   // name, type, size of the box, then min x, min y, max x, max y.
   const std::size_t window = good.find("dataWindow") + sizeof("dataWindow") + sizeof("box2i") + 4;
   bad = good;
   bad[window + 10] = 0x7f;
   write_bytes(bad);
-  EXPECT_THAT(error_of([&] { read_exr(file); }),
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }),
               HasSubstr("its header promises 8323075 x 2 pixels of 5 channels"));
   bad = good;
   bad[window + 14] = 0x7f;
   write_bytes(bad);
-  EXPECT_THAT(error_of([&] { read_exr(file); }),
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }),
               HasSubstr("its header promises 3 x 8323074 pixels of 5 channels"));
   bad = good;
   bad[good.find("seed") + sizeof("seed") + sizeof("string") + 3] = 0x7f;
   write_bytes(bad);
-  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("its attribute 'seed' claims 2130706433 bytes"));
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }),
+              HasSubstr("its attribute 'seed' claims 2130706433 bytes"));
   bad[good.find("seed")] = '\xe9';
   write_bytes(bad);
-  EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("its attribute '?eed' claims 2130706433 bytes"));
+  EXPECT_THAT(test::error_of([&] { read_exr(file); }),
+              HasSubstr("its attribute '?eed' claims 2130706433 bytes"));
 }
 
 TEST_F(ExrFile, EveryPrefixOfAFileIsAnError) {
@@ -274,7 +262,7 @@ TEST_F(ExrFile, EveryPrefixOfAFileIsAnError) {
   const std::string good = read_bytes();
   for (std::size_t size = 0; size < good.size(); ++size) {
     write_bytes(good.substr(0, size));
-    EXPECT_THAT(error_of([&] { read_exr(file); }), HasSubstr("image.exr: cannot read this EXR image: "))
+    EXPECT_THAT(test::error_of([&] { read_exr(file); }), HasSubstr("image.exr: cannot read this EXR image: "))
         << size;
   }
 }
@@ -288,13 +276,13 @@ TEST_F(ExrFile,
       std::string bad = good;
       bad[i] = char(bad[i] ^ change);
       write_bytes(bad);
-      error_of([&] { read_exr(file); });
+      test::error_of([&] { read_exr(file); });
     }
   }
 }
 
 TEST_F(ExrFile, BadFilesGiveAnErrorOrAnImage) {
-  const fs::path bad = test_data() / "badinput/exr";
+  const fs::path bad = test::data_folder() / "badinput/exr";
   if (!fs::exists(bad)) GTEST_SKIP() << "no " << bad;
   int errors = 0, images = 0;
   for (const auto& entry : fs::directory_iterator(bad)) {
@@ -314,7 +302,7 @@ TEST_F(ExrFile, BadFilesGiveAnErrorOrAnImage) {
 }
 
 TEST_F(ExrFile, ValidFilesOfEveryCompressionAreRead) {
-  const fs::path valid = test_data() / "badinput/exr-valid";
+  const fs::path valid = test::data_folder() / "badinput/exr-valid";
   if (!fs::exists(valid)) GTEST_SKIP() << "no " << valid;
   for (const auto& entry : fs::directory_iterator(valid)) {
     EXPECT_NO_THROW({
@@ -326,7 +314,7 @@ TEST_F(ExrFile, ValidFilesOfEveryCompressionAreRead) {
 }
 
 TEST_F(ExrFile, LosslessCompressionsAgree) {
-  const fs::path valid = test_data() / "badinput/exr-valid";
+  const fs::path valid = test::data_folder() / "badinput/exr-valid";
   if (!fs::exists(valid)) GTEST_SKIP() << "no " << valid;
   for (const auto& [one, other] :
        {std::pair("f16_uncompressed.exr", "f16_piz.exr"), std::pair("f16_uncompressed.exr", "f16_rle.exr"),

@@ -3,6 +3,8 @@
 
 #include "film/image_file.h"
 #include "geometry/bounds.h"
+#include "support/data_folder.h"
+#include "support/error_of.h"
 #include "test_scene.h"
 
 #include <cmath>
@@ -21,14 +23,9 @@ using testing::HasSubstr;
 const std::string camera = camera_xml({0, 0, 4}, {0, 0, 0}, 30, 4, "independent");
 const std::string shape = rectangle_xml({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, "");
 
-/// The message of the error that these lights are; empty where there is none.
+/// The message of the error that these lights are.
 std::string error_of(const std::string& lights) {
-  try {
-    load_scene_text(camera + shape + lights);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_of([&] { load_scene_text(camera + shape + lights); });
 }
 
 class EnvmapFile : public testing::Test {
@@ -42,12 +39,7 @@ class EnvmapFile : public testing::Test {
     return load_scene(read_nori_xml(folder_.path() / "scene.xml", Dialect::nori));
   }
   std::string error_of(const Image& image) const {
-    try {
-      load(image);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test::error_of([&] { load(image); });
   }
   static Image grey(float value, float odd) {
     Image image{4, 2, {{"B", {}}, {"G", {}}, {"R", {}}}, {}};
@@ -57,7 +49,7 @@ class EnvmapFile : public testing::Test {
   }
 
  private:
-  TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(EnvmapFile, IsNamedWithTheTexelThatCannotBeUsed) {
@@ -83,8 +75,8 @@ TEST_F(EnvmapFile, MayHaveAnyContrast) {
   for (Channel& channel : image.channels) channel.values[5] = 1e30f;
   const LoadedScene loaded = load(image);
   for (std::uint32_t i = 0; i < 1000; ++i) {
-    const LightSample<float> sample = loaded.scene.lights.sample<float>(
-        0, 1, {0, 0, 0}, {i << 22, i * 2654435761u}, true);
+    const LightSample<float> sample =
+        loaded.scene.lights.sample<float>(0, 1, {0, 0, 0}, {i << 22, i * 2654435761u}, true);
     ASSERT_TRUE(sample.is_there);
     ASSERT_TRUE(std::isfinite(sample.radiance_over_pdf.g) && std::isfinite(sample.pdf_solid_angle()));
   }
@@ -92,10 +84,7 @@ TEST_F(EnvmapFile, MayHaveAnyContrast) {
 
 /// What OpenEXR's own tests call valid: read and used, or refused for what is in it.
 TEST(EnvmapFiles, OfOthersAreReadOrRefusedWithAReason) {
-  const char* given = std::getenv("ETENDUE_TEST_DATA");
-  const std::filesystem::path data =
-      given ? std::filesystem::path(given) : std::filesystem::path(ETENDUE_SOURCE_DIR) / "../shared/data";
-  const std::filesystem::path folder = data / "badinput" / "exr-valid";
+  const std::filesystem::path folder = test::data_folder() / "badinput" / "exr-valid";
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
   int used = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -157,7 +146,7 @@ TEST(LoadLight, TakesLightsInTheSceneAndInsideShapes) {
 }
 
 TEST(LoadLight, AsksForALightOnlyWhereOneIsNeeded) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "scene.xml") << "<scene>" << camera << shape << "</scene>";
   const SceneDesc description = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
   const LoadedScene loaded = load_scene(description);

@@ -1,6 +1,7 @@
 #include "scenefile/nori_xml.h"
 
 #include "scenefile/text_file.h"
+#include "support/data_folder.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -404,13 +405,6 @@ TEST_F(NoriXml, ReadsTexturesAndPhaseFunctionsAsChildrenWithNames) {
   EXPECT_EQ(scene.root.children[1].children[0].family, "phase");
 }
 
-/// The folder of files written by others, or empty.
-fs::path test_data() {
-  const char* stated = std::getenv("ETENDUE_TEST_DATA");
-  const fs::path folder = stated ? fs::path(stated) : fs::path(ETENDUE_SOURCE_DIR) / ".." / "shared" / "data";
-  return fs::is_directory(folder) ? folder : fs::path();
-}
-
 std::vector<fs::path> xml_files(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
@@ -419,9 +413,9 @@ std::vector<fs::path> xml_files(const fs::path& folder) {
 }
 
 TEST(NoriXmlData, ReadsTheScenesAndTestsOfRealCourses) {
-  if (test_data().empty()) GTEST_SKIP() << "no test data";
+  if (!fs::is_directory(test::data_folder())) GTEST_SKIP() << "no test data";
   int count = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(test_data())) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(test::data_folder())) {
     if (!entry.path().filename().string().starts_with("nori-")) continue;
     for (const fs::path& file : xml_files(entry.path())) {
       ++count;
@@ -439,9 +433,9 @@ TEST(NoriXmlData, ReadsTheScenesAndTestsOfRealCourses) {
 }
 
 TEST(NoriXmlData, NoFileIsTakenForAnotherGeneration) {
-  if (test_data().empty()) GTEST_SKIP() << "no test data";
+  if (!fs::is_directory(test::data_folder())) GTEST_SKIP() << "no test data";
   int told = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(test_data())) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(test::data_folder())) {
     const std::string folder = entry.path().filename().string();
     if (!folder.starts_with("nori-")) continue;
     const bool is_first =
@@ -460,8 +454,8 @@ TEST(NoriXmlData, NoFileIsTakenForAnotherGeneration) {
 }
 
 TEST(NoriXmlData, RefusesBadFilesByName) {
-  if (test_data().empty()) GTEST_SKIP() << "no test data";
-  for (const fs::path& file : xml_files(test_data() / "badinput" / "xml")) {
+  if (!fs::is_directory(test::data_folder())) GTEST_SKIP() << "no test data";
+  for (const fs::path& file : xml_files(test::data_folder() / "badinput" / "xml")) {
     try {
       read_nori_xml(file);
     } catch (const InputError& e) {

@@ -10,9 +10,11 @@
 
 #include "render/thread_limit.h"
 #include "stats/quantile.h"
+#include "support/error_of.h"
 #include "support/program.h"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -31,16 +33,11 @@ class NoriTest : public testing::Test {
     const std::filesystem::path file = folder_.path() / "t.xml";
     std::filesystem::remove(file);
     test::write_file(file, text);
-    return run_test_file(read_test_file(file, dialect), {.seed = seed, .sampler = SamplerKind::independent}, {},
-                         warnings_);
+    return run_test_file(read_test_file(file, dialect), {.seed = seed, .sampler = SamplerKind::independent},
+                         {}, warnings_);
   }
   std::string error(const std::string& text) {
-    try {
-      run(text);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return {};
+    return test::error_of([&] { run(text); });
   }
   static std::string ttest(const std::string& references, const std::string& rest) {
     return "<test type='ttest'><string name='references' value='" + references + "'/>" + rest + "</test>";
@@ -219,7 +216,7 @@ TEST_F(NoriTest, ASampleThatIsNotFiniteFails) {
   const CaseResult result = run(ttest("1", scene(floor + blinding)))[0];
   EXPECT_FALSE(result.is_passed);
   EXPECT_FALSE(result.is_error);
-  EXPECT_THAT(result.problem, HasSubstr("not finite or negative"));
+  EXPECT_THAT(result.problem, HasSubstr("negative or not finite"));
 }
 
 TEST_F(NoriTest, SamplesOfBsdfsFollowTheirDensity) {
@@ -238,6 +235,38 @@ TEST_F(NoriTest, SamplesOfBsdfsFollowTheirDensity) {
     }
     EXPECT_EQ(results[7].detail, "direction 3");
   }
+}
+
+TEST_F(NoriTest, ALobeTooNarrowForTheCellsIsNoMisfit) {
+  const auto rough = [](const char* alpha, const char* rows) {
+    return fmt::format(
+        "<test type='chi2test'><integer name='testCount' value='2'/><integer name='resolution' value='{}'/>"
+        "<integer name='sampleCount' value='500000'/><bsdf type='roughconductor'><float name='alpha' "
+        "value='{}'/></bsdf></test>",
+        rows, alpha);
+  };
+  for (const CaseResult& result : run(rough("0.001", "10"))) {
+    EXPECT_TRUE(result.is_error);
+    EXPECT_THAT(result.problem, HasSubstr("too narrow"));
+  }
+  for (const CaseResult& result : run(rough("0.02", "10"))) EXPECT_GT(result.p_value, surely_right);
+  for (const CaseResult& result : run(rough("0.005", "40"))) EXPECT_GT(result.p_value, surely_right);
+}
+
+TEST_F(NoriTest, MoreSamplesThanCanBeNumberedAreRefused) {
+  const std::string start = "<test type='chi2test'><integer name='resolution' value='900'/>";
+  EXPECT_THAT(error(start + grey + "</test>"), HasSubstr("state a 'sampleCount'"));
+}
+
+TEST_F(NoriTest, AScenesLightsThatTheIntegratorCannotSeeAreToldOf) {
+  const std::string floor = "<shape type='rectangle'/>";
+  const CaseResult unlit = run(ttest("1", scene(floor)))[0];
+  EXPECT_TRUE(unlit.is_error);
+  EXPECT_THAT(unlit.problem, HasSubstr("no light"));
+  EXPECT_TRUE(run(ttest("0", scene(floor)))[0].is_passed);
+  run(ttest("0", scene(floor + "<emitter type='point'/>", "direct_mats")));
+  ASSERT_FALSE(warnings_.empty());
+  EXPECT_THAT(warnings_.back(), HasSubstr("will not shine"));
 }
 
 TEST_F(NoriTest, ResultsDependOnTheSeedAloneNotOnThreads) {

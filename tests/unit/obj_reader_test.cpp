@@ -3,8 +3,9 @@
 
 #include "base/error.h"
 #include "geometry/shapes.h"
+#include "support/data_folder.h"
+#include "support/error_of.h"
 
-#include <cstdlib>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,12 +33,7 @@ Mesh read_text(const std::string& text, const Transform& world_from_object = {})
 }
 
 std::string error_of(const std::string& text, const Transform& world_from_object = {}) {
-  try {
-    read_text(text, world_from_object);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_of([&] { read_text(text, world_from_object); });
 }
 
 Vec3f corner(const Mesh& mesh, std::size_t k) { return mesh.positions[mesh.indices[k]]; }
@@ -346,11 +342,6 @@ TEST(ObjReaderError, garbage) {
               HasSubstr("no face"));
 }
 
-std::filesystem::path shared_data() {
-  const char* set = std::getenv("ETENDUE_TEST_DATA");
-  return set ? std::filesystem::path(set) : std::filesystem::path(ETENDUE_SOURCE_DIR) / "../shared/data";
-}
-
 void expect_sound(const Mesh& mesh) {
   ASSERT_GT(mesh.triangle_count(), 0u);
   ASSERT_EQ(mesh.indices.size() % 3, 0u);
@@ -385,7 +376,7 @@ std::size_t count_triangles(const std::filesystem::path& file) {
 }
 
 TEST(ObjReaderData, meshes_are_read_whole) {
-  const auto folder = shared_data() / "meshes";
+  const auto folder = test::data_folder() / "meshes";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is absent";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".obj") continue;
@@ -397,7 +388,7 @@ TEST(ObjReaderData, meshes_are_read_whole) {
 }
 
 TEST(ObjReaderData, bad_files_give_a_mesh_or_an_error_with_a_line) {
-  const auto folder = shared_data() / "badinput/obj";
+  const auto folder = test::data_folder() / "badinput/obj";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is absent";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     SCOPED_TRACE(entry.path());

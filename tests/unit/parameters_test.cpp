@@ -1,5 +1,7 @@
 #include "scenefile/parameters.h"
 
+#include "support/error_of.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdexcept>
@@ -38,12 +40,7 @@ class ParametersTest : public testing::Test {
   std::string error(std::vector<Property> properties, const Plugin& accepted = plugin) const {
     std::vector<UnreadKey> unread;
     const Object stated = object(std::move(properties));
-    try {
-      const Parameters parameters(stated, accepted, unread);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return {};
+    return test::error_of([&] { Parameters(stated, accepted, unread); });
   }
   std::vector<UnreadKey> unread_;
 };
@@ -151,12 +148,7 @@ class Textures : public ParametersTest {
   }
   std::string error_of(const Object& stated, const Plugin& accepted = textured) const {
     std::vector<UnreadKey> unread;
-    try {
-      const Parameters parameters(stated, accepted, unread);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return {};
+    return test::error_of([&] { Parameters(stated, accepted, unread); });
   }
 };
 

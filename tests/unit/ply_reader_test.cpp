@@ -2,12 +2,13 @@
 #include "geometry/ply_reader.h"
 
 #include "base/error.h"
+#include "support/data_folder.h"
+#include "support/error_of.h"
 #include "support/memory_file.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -34,12 +35,7 @@ Mesh read_bytes(const std::string& bytes, const Transform& world_from_object = {
 }
 
 std::string error_of(const std::string& bytes, const Transform& world_from_object = {}) {
-  try {
-    read_bytes(bytes, world_from_object);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::error_of([&] { read_bytes(bytes, world_from_object); });
 }
 
 const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
@@ -345,7 +341,7 @@ TEST(PlyReaderError, binary_rows) {
     with.add(length).add(0).add(1).add(last);
     return error_of(with.text);
   };
-  EXPECT_EQ(face(3, 2), "no error");
+  EXPECT_EQ(face(3, 2), "");
   EXPECT_THAT(face(3, 3), AllOf(HasSubstr("rows.ply: face 0: vertex 3 does not exist")));
   EXPECT_THAT(face(3, -1), HasSubstr("vertex -1 does not exist"));
   EXPECT_THAT(face(-3, 2), HasSubstr("a list of -3 entries"));
@@ -360,9 +356,7 @@ TEST(PlyReaderError, binary_rows) {
 }
 
 TEST(PlyReaderData, files_of_others) {
-  const char* set = std::getenv("ETENDUE_TEST_DATA");
-  const auto data =
-      set ? std::filesystem::path(set) : std::filesystem::path(ETENDUE_SOURCE_DIR) / "../shared/data";
+  const auto data = test::data_folder();
   if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is absent";
   std::size_t read = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {

@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include "film/image_file.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 #include <cmath>
@@ -13,16 +14,6 @@ namespace {
 
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-
-template <class Run>
-std::string error_of(Run&& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 class PngFile : public testing::Test {
  protected:
@@ -74,15 +65,15 @@ TEST_F(PngFile, IsTaggedSrgb) {
 }
 
 TEST_F(PngFile, SaysWhatIsMissing) {
-  EXPECT_THAT(error_of([&] {
+  EXPECT_THAT(test::error_of([&] {
                 write_png(file, {1, 1, {{"R", {1}}, {"B", {1}}}, {}});
               }),
               HasSubstr("image.png: a PNG needs the channels R, G and B; G is missing"));
-  EXPECT_THAT(error_of([&] {
+  EXPECT_THAT(test::error_of([&] {
                 write_png(file, {2, 1, {{"R", {1}}, {"G", {1}}, {"B", {1}}}, {}});
               }),
               HasSubstr("channel R has 1 values, the image 2 x 1 pixels"));
-  EXPECT_THAT(error_of([&] {
+  EXPECT_THAT(test::error_of([&] {
                 write_png(folder / "none/a.png", {1, 1, {{"R", {1}}, {"G", {1}}, {"B", {1}}}, {}});
               }),
               HasSubstr("a.png: cannot write: No such file or directory"));
@@ -93,16 +84,17 @@ TEST_F(PngFile, CheckWritableAsksBeforeTheRender) {
   EXPECT_NO_THROW(check_writable(file));
   EXPECT_NO_THROW(check_writable(folder / "a.b.exr"));
   EXPECT_NO_THROW(check_writable("image.exr"));
-  EXPECT_THAT(error_of([&] { check_writable(folder / "image.jpg"); }),
+  EXPECT_THAT(test::error_of([&] { check_writable(folder / "image.jpg"); }),
               HasSubstr("the ending '.jpg'\nexpected: "));
-  EXPECT_THAT(error_of([&] { check_writable(folder / "image"); }), HasSubstr("a name without an ending"));
-  EXPECT_THAT(error_of([&] { check_writable(folder / "none/image.png"); }),
+  EXPECT_THAT(test::error_of([&] { check_writable(folder / "image"); }),
+              HasSubstr("a name without an ending"));
+  EXPECT_THAT(test::error_of([&] { check_writable(folder / "none/image.png"); }),
               HasSubstr("mkdir -p " + folder.string()));
   fs::create_directory(folder / "folder.png");
-  EXPECT_THAT(error_of([&] { check_writable(folder / "folder.png"); }), HasSubstr("is a folder"));
+  EXPECT_THAT(test::error_of([&] { check_writable(folder / "folder.png"); }), HasSubstr("is a folder"));
   if (geteuid() != 0) {  // Root may write anywhere.
     fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
-    EXPECT_THAT(error_of([&] { check_writable(file); }), HasSubstr("no permission to write"));
+    EXPECT_THAT(test::error_of([&] { check_writable(file); }), HasSubstr("no permission to write"));
     fs::permissions(folder, fs::perms::owner_all);
   }
 }

@@ -98,6 +98,32 @@ TEST_P(Replay, SaysHowTheRadianceCameAbout) {
   }
 }
 
+TEST(ReplayOfSeveralBsdfSamples, NumbersVerticesAndBranches) {
+  const LoadedScene loaded = small_scene();
+  RenderSettings settings;
+  settings.integrator = integrator_from_name("direct_mis");
+  settings.integrator.rules.bsdf_samples = 3;
+  settings.samples_per_pixel = 8;
+  settings.replicates = 1;
+  const SampleTrace trace = replay(loaded.scene, settings, {1, 1, 0, 0});
+  int left = 0;
+  for (std::size_t i = 0; i < trace.vertices.size(); ++i) {
+    const SampleTrace::Vertex& vertex = trace.vertices[i];
+    if (vertex.number == 0) {
+      EXPECT_EQ(vertex.branch, left++);
+      ASSERT_TRUE(vertex.bsdf_sample);
+    } else {
+      ASSERT_GT(i, 0u);
+      EXPECT_EQ(vertex.number, 1);
+      EXPECT_EQ(vertex.branch, trace.vertices[i - 1].branch);
+      EXPECT_TRUE(trace.vertices[i - 1].bsdf_sample->is_followed);
+      EXPECT_FALSE(vertex.light_sample || vertex.bsdf_sample);
+    }
+  }
+  EXPECT_EQ(left, 3);
+  EXPECT_GT(trace.vertices.size(), 3u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, Replay,
                          testing::Values("light", "direct", "average", "mis", "path_mis", "path_ems",
                                          "path_mats", "whitted", "every_light"));

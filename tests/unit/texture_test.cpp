@@ -7,6 +7,7 @@
 
 #include "bsdf/bsdf.h"
 #include "film/image_file.h"
+#include "support/error_of.h"
 #include "test_scene.h"
 
 #include <fstream>
@@ -55,12 +56,12 @@ void write_six_pixels(const std::filesystem::path& file) {
             {2, 3, {{"R", {0, 1, 2, 3, 4, 5}}, {"G", {1, 1, 1, 1, 1, 1}}, {"B", {0, 0, 0, 0, 0, 0}}}, {}});
 }
 
-ColorTexture load(const std::string& inside,
-                  const std::function<void(const std::filesystem::path&)>& prepare) {
-  const TemporaryFolder folder;
+ColorTexture load(const std::string& inside, const std::function<void(const std::filesystem::path&)>& prepare,
+                  const std::string& type = "imagetexture") {
+  const test::TemporaryFolder folder;
   prepare(folder.path());
   std::ofstream(folder.path() / "scene.xml")
-      << "<scene><bsdf type=\"diffuse\"><texture type=\"imagetexture\" name=\"albedo\">" << inside
+      << "<scene><bsdf type=\"diffuse\"><texture type=\"" << type << "\" name=\"albedo\">" << inside
       << "</texture></bsdf></scene>";
   const SceneDesc scene = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
   std::vector<UnreadKey> unread;
@@ -129,7 +130,7 @@ double linear(double encoded) {
 }
 
 TEST(PngRead, EveryKindOfPixelIsDecoded) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.png";
   const auto first = [&](PngEncoding encoding, std::size_t pixel) {
     const Image image = read_png(file, encoding);
@@ -155,7 +156,7 @@ TEST(PngRead, EveryKindOfPixelIsDecoded) {
 }
 
 TEST(PngRead, WhatIsWrittenIsReadAgain) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   Image image{256, 1, {{"R", {}}, {"G", {}}, {"B", {}}}, {}};
   for (int i = 0; i < 256; ++i)
     for (Channel& channel : image.channels) channel.values.push_back(float(linear(i / 255.0)));
@@ -164,19 +165,10 @@ TEST(PngRead, WhatIsWrittenIsReadAgain) {
   EXPECT_EQ(again.find("G")->values, image.channels[1].values);
 }
 
-std::string message_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(PngRead, BadFilesAreErrors) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.png";
-  const auto message = [&] { return message_of([&] { read_png(file, PngEncoding::srgb); }); };
+  const auto message = [&] { return test::error_of([&] { read_png(file, PngEncoding::srgb); }); };
   EXPECT_THAT(message(), HasSubstr("there is no such file"));
   std::ofstream(file) << "this is text";
   EXPECT_THAT(message(), HasSubstr("a.png: cannot read this PNG image: Not a PNG file"));
@@ -198,14 +190,24 @@ TEST(PngRead, BadFilesAreErrors) {
   }
 }
 
+TEST(Texture, OtherNamesOfTheForks) {
+  const auto six = [](const auto& folder) { write_six_pixels(folder / "a.exr"); };
+  EXPECT_EQ(at(load(file_xml("a.exr"), six, "image_texture"), 0.3f, 0.6f), at(six_pixels(""), 0.3f, 0.6f));
+  const ColorTexture constant = load(
+      "<color name=\"value\" value=\"0.1 0.2 0.3\"/>", [](const auto&) {}, "constant_color");
+  EXPECT_TRUE(is_uniform(constant));
+  EXPECT_EQ(at(constant, 0.3f, 0.6f), (Colorf{0.1f, 0.2f, 0.3f}));
+}
+
 TEST(Texture, BadOnesAreErrorsThatNameThem) {
   const auto nothing = [](const std::filesystem::path&) {};
-  EXPECT_THAT(message_of([&] { load(file_xml("b.png"), nothing); }), HasSubstr("'b.png' is not there"));
-  EXPECT_THAT(message_of([&] { load("", nothing); }), HasSubstr("lacks 'filename'"));
-  EXPECT_THAT(message_of([&] { load(file_xml("scene.xml"), nothing); }), HasSubstr("ends in .exr or .png"));
-  EXPECT_THAT(message_of([&] { six_pixels("<string name=\"wrap\" value=\"repeated\"/>"); }),
+  EXPECT_THAT(test::error_of([&] { load(file_xml("b.png"), nothing); }), HasSubstr("'b.png' is not there"));
+  EXPECT_THAT(test::error_of([&] { load("", nothing); }), HasSubstr("lacks 'filename'"));
+  EXPECT_THAT(test::error_of([&] { load(file_xml("scene.xml"), nothing); }),
+              HasSubstr("ends in .exr or .png"));
+  EXPECT_THAT(test::error_of([&] { six_pixels("<string name=\"wrap\" value=\"repeated\"/>"); }),
               HasSubstr("did you mean 'repeat'?"));
-  EXPECT_THAT(message_of([&] {
+  EXPECT_THAT(test::error_of([&] {
                 load(file_xml("a.exr"), [](const std::filesystem::path& folder) {
                   write_exr(folder / "a.exr", {1, 1, {{"Y", {-1}}}, {}});
                 });

@@ -120,7 +120,8 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
     all[name + "::eval_"] = all[name + "::pdf_solid_angle_"] = {{real(-1, 1)}, 40, 5, 2};
     // Slopes of Beckmann's have no end: towards 1 the rounding of the random number itself decides.
     const bool is_endless = name.ends_with("beckmann");
-    all[name + "::sample_"] = {{is_endless ? real(0, 1, {0, 0.25f, 0.5f, 0.75f, 0.999f}) : unit()}, 4000, 1, 1};
+    all[name + "::sample_"] = {
+        {is_endless ? real(0, 1, {0, 0.25f, 0.5f, 0.75f, 0.999f}) : unit()}, 4000, 1, 1};
   }
   all["Dielectric::sample_"] = {{unit()}, 10, 1, 1};
   // Not at the edges of squares, where rounding decides.
@@ -167,7 +168,7 @@ SceneFile map_file() {
       for (std::size_t k = 0; k < 3; ++k)
         image.channels[k].values.push_back(
             std::max(0.0f, std::sin(0.17f * float(i)) + 0.5f * std::cos(0.3f * float(j) + float(k))));
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write_exr(folder.path() / "map.exr", image);
   std::ifstream stream(folder.path() / "map.exr", std::ios::binary);
   return {"map.exr", {std::istreambuf_iterator<char>(stream), {}}};
@@ -184,7 +185,7 @@ std::string textured_xml(const std::string& texture) {
 /// glossy, 2 a light's, then all others in the order of the table, then three textures; geometry 0 is smooth.
 LoadedScene test_scene(std::uint32_t lights) {
   constexpr std::uint32_t few = 8, others = 6;
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::filesystem::path image = folder.path() / "texture.exr";
   write_exr(image,
             {2, 2, {{"R", {0.1f, 0.9f, 0.4f, 0.7f}}, {"G", {1, 0, 0, 1}}, {"B", {0, 0.2f, 0.6f, 1}}}, {}});

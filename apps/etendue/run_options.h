@@ -1,0 +1,26 @@
+// The options that commands which compute have in common.
+#pragma once
+
+#include "render/isa.h"
+#include "scenefile/dialect.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace etendue::app {
+
+struct RunOptions {
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0: all cores.
+  std::string isa_name, dialect_name;
+
+  Isa isa() const;                         ///< Throws InputError for one that this machine has not.
+  std::optional<Dialect> dialect() const;  ///< Throws InputError for an unknown one.
+};
+
+/// Adds --seed, --threads, --isa and --dialect. `options` must live as long as the command.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+}  // namespace etendue::app
