@@ -38,7 +38,7 @@ LEAST_SPP = 64
 FALSE_ALARMS = 1e-4  # of all images of a run together
 FIGURE_WIDTH = 288
 FIGURE_Z = 5.0
-LEAST_RAYS, MOST_RAYS = 512, 16384  # for each pixel of a scene without a reference, however precise its mean is
+LEAST_RAYS, MOST_RAYS = 512, 4096  # for each pixel of a scene without a reference, however precise its mean is
 # Of scenes without a reference: what else must give the same picture. Better one whose contributions no more than the
 # lights' radiance bounds, as for rays that meet lights, than light samples: near a light their variance is infinite.
 PARTNERS = {"path_mis": "path_mats", "path_ems": "path_mis", "path_mats": "path_mis", "light": "mis",
