@@ -335,7 +335,7 @@ def save_figure(path, ours, z):
     figure = Image.new("RGB", (2 * size[0] + 4, size[1]), "white")
     figure.paste(Image.fromarray(srgb(ours)).resize(size, Image.BOX), (0, 0))
     figure.paste(Image.fromarray(z_colors(z)).resize(size, Image.NEAREST), (size[0] + 4, 0))
-    figure.quantize(128).save(path, optimize=True)
+    figure.save(path, optimize=True)
 
 
 PAGE = """# The Nori family, file by file
