@@ -4,8 +4,9 @@
 The files are not part of the project: they are looked for in ../shared/data, or in $ETENDUE_TEST_DATA. Tests run with
 three seeds. Scenes are rendered as they stand. Where a reference image exists, ours has to agree with it (see
 image_blocks.py) and be the right way round. Where none exists and the scene has one integrator that another one must
-agree with, both are rendered and compared in the same way. Needs NumPy, Pillow and OpenImageIO
-(scripts/setup.sh report).
+agree with, both are rendered and compared in the same way. A pilot with other random numbers tells how many samples
+each needs for the whole picture's difference to be known well enough (--precision); the split is the one that costs
+the fewest rays. Needs NumPy, Pillow and OpenImageIO (scripts/setup.sh report).
 """
 import argparse
 import json
@@ -24,7 +25,7 @@ from PIL import Image
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "report"))
-from image_blocks import FACTOR_WHITE, compare, is_right_way_round  # noqa: E402
+from image_blocks import Picture, compare, is_right_way_round  # noqa: E402
 from images import read_exr, srgb  # noqa: E402
 
 # The generation that each course belongs to. --dialect is passed only for files that do not tell themselves.
@@ -37,9 +38,15 @@ LEAST_SPP = 64
 FALSE_ALARMS = 1e-4  # of all images of a run together
 FIGURE_WIDTH = 288
 FIGURE_Z = 5.0
-# Of scenes without a reference: what else must give the same picture.
-PARTNERS = {"path": "path_mis", "path_ems": "path_mis", "path_mis": "path_ems", "mipath": "path_ems",
-            "path_mats": "path_mis", "light": "mis", "mis": "direct"}
+LEAST_RAYS, MOST_RAYS = 512, 4096  # for each pixel of a scene without a reference, however precise its mean is
+# Of scenes without a reference: what else must give the same picture. Better one whose contributions no more than the
+# lights' radiance bounds, as for rays that meet lights, than light samples: near a light their variance is infinite.
+PARTNERS = {"path_mis": "path_mats", "path_ems": "path_mis", "path_mats": "path_mis", "light": "mis",
+            "every_light": "mis", "average": "mis", "direct": "mis", "mis": "direct"}
+# Where a light has no extent no ray meets it.
+PARTNERS_OF_POINTS = {"path_mis": "path_ems", "path_ems": "path_mis", "light": "mis", "every_light": "mis",
+                      "mis": "light"}
+POINTS = r'<(?:emitter|luminaire|light)\s[^>]*type="[^"]*(?:point|spot|directional)[^"]*"'
 
 
 @dataclass
@@ -50,36 +57,31 @@ class Explanation:
     altered: tuple = ()  # (old text of the scene, new text) ...: a copy so changed agrees
     least_brightness: float = 0.0  # blocks that are brighter agree
     rim_of: float = None  # blocks agree but for those with pixels on both sides of this radiance
-    has_twins: bool = False  # a copy whose meshes have each triangle once agrees
 
 
 EXPLANATIONS = [
     Explanation("nori-eth2015-scenes/pa3/sphere/",
-                "The three references agree with each other, but show everything 1 % larger than the file says: the same "
-                "scene with a field of view of 39.65 instead of 40 degrees agrees.",
+                "The three references agree with each other, but show everything 1 % larger than the file says: the "
+                "same scene with a field of view of 39.65 instead of 40 degrees agrees.",
                 altered=(('name="fov" value="40"', 'name="fov" value="39.65"'),)),
     Explanation("nori-wjakob-scenes/pa4/motto/motto-diffuse.xml",
-                "The lights are coarse spheres (528 triangles) with vertex normals. Nori's light samples take their cosine "
-                "by the interpolated normal, ours by that of the triangle, which is what rays that meet the light by "
-                "chance see too. Integrated over the meshes, its lights are 0.3 to 0.45 % darker: with lights of 0.9965 of "
-                "the radiance the scene agrees.",
+                "The lights are coarse spheres (528 triangles) with vertex normals. Nori's light samples take their "
+                "cosine by the interpolated normal, ours by that of the triangle, which is what rays that meet the "
+                "light by chance see too. Integrated over the meshes, its lights are 0.3 to 0.45 % darker: with "
+                "lights of 0.9965 of the radiance the scene agrees.",
                 altered=(('value="20, 80, 30"', 'value="19.93, 79.72, 29.895"'),
                          ('value="20, 20, 200"', 'value="19.93, 19.93, 199.3"'))),
     Explanation("nori-eth-scenes/pa3/veach_mi/veach_mats.xml",
-                "The lights are spheres of 768 triangles with vertex normals. Nori asks the interpolated normal whether "
-                "a light is seen from its front, so that a thin rim of them is black: 0.15 % of their disks, by an "
-                "integral over the mesh. Blocks without a rim agree.",
+                "The lights are spheres of 768 triangles with vertex normals. Nori asks the interpolated normal "
+                "whether a light is seen from its front, so that a thin rim of them is black: 0.15 % of their "
+                "disks, by an integral over the mesh. Blocks without a rim agree.",
                 rim_of=1.2),
     Explanation("nori-zaragoza-scenes/assignment-2/cbox/cbox_ems.xml",
-                "Where light arrives at a grazing angle, within 2 cm of the height of the lamp, the reference is up to 18 % "
-                "darker. The reference of Nori's own course for the same box (cbox-distributed) is not, and agrees with ours "
-                "there too. Blocks in which radiance is above 0.05 (the picture's mean is 0.33) agree.",
+                "Where light arrives at a grazing angle, within 2 cm of the height of the lamp, the reference is up "
+                "to 18 % darker. The reference of Nori's own course for the same box (cbox-distributed) is not, and "
+                "agrees with ours there too. Blocks in which radiance is above 0.05 (the picture's mean is 0.33) "
+                "agree.",
                 least_brightness=0.05),
-    Explanation("nori-acg13-phong/phong-path.xml",
-                "sphere.obj, of which both lights are made, has each of its 4900 triangles twice. Light samples find both, "
-                "rays that meet the light by chance one of them: light samples are twice as bright. With each triangle "
-                "once the integrators agree.",
-                has_twins=True),
 ]
 
 
@@ -114,8 +116,7 @@ def find_files(data):
     """Test files and scenes, relative to data, by the root element that each has."""
     tests, scenes = [], []
     for path in sorted(data.glob("nori-*/**/*.xml")):
-        text = re.sub(r"<!--.*?-->", "", path.read_text(errors="replace"), flags=re.S)
-        root = re.search(r"<(scene|test)\b", text)
+        root = re.search(r"<(scene|test)\b", without_comments(path))
         if root:
             (tests if root[1] == "test" else scenes).append(path.relative_to(data))
     return tests, scenes
@@ -180,10 +181,13 @@ def told_dialect(program, data, scene, folder):
     return (None, "default") if stats["dialect"] == wanted else (wanted, "`--dialect`")
 
 
+def without_comments(path):
+    return re.sub(r"<!--.*?-->", "", path.read_text(errors="replace"), flags=re.S)
+
+
 def sample_count(data, scene):
     """What the file's sampler says."""
-    text = re.sub(r"<!--.*?-->", "", (data / scene).read_text(errors="replace"), flags=re.S)
-    match = re.search(r'name="sampleCount"\s+value="(\d+)"', text)
+    match = re.search(r'name="sampleCount"\s+value="(\d+)"', without_comments(data / scene))
     return int(match[1]) if match else 1
 
 
@@ -191,106 +195,106 @@ def rounded_up(spp):
     return math.ceil(spp / REPLICATES) * REPLICATES
 
 
+def partner_of(data, scene, integrator):
+    has_points = re.search(POINTS, without_comments(data / scene))
+    return (PARTNERS_OF_POINTS if has_points else PARTNERS).get(integrator)
+
+
+def balanced_spp(pilots, precision):
+    """Samples a pixel for each of two integrators, such that the difference of their pictures' means has the standard
+    error `precision` (relative) for the fewest rays. `pilots`: of each, the stats and picture of a small render."""
+    noises, costs = [], []
+    for stats, picture in pilots:
+        mean = picture.pixels.mean(axis=(0, 1), dtype=np.float64)
+        stderr = np.sqrt(np.sum(picture.stderr.astype(np.float64) ** 2, axis=(0, 1))) / picture.pixels[..., 0].size
+        relative = np.divide(stderr, mean, out=np.zeros_like(mean), where=mean > 0).max()
+        noises.append(relative * math.sqrt(picture.spp))
+        costs.append((stats["camera_rays"] + stats["shadow_rays"] + stats["bsdf_rays"]) / stats["samples"])
+    total = sum(noise * math.sqrt(cost) for noise, cost in zip(noises, costs))
+    wanted = [noise * total / math.sqrt(cost) / precision ** 2 for noise, cost in zip(noises, costs)]
+    return [rounded_up(min(max(spp, LEAST_RAYS / cost), MOST_RAYS / cost)) for spp, cost in zip(wanted, costs)]
+
+
+def read_picture(path, spp):
+    pixels, stderr = read_exr(path)
+    return Picture(pixels, spp, stderr)
+
+
 def check_scene(program, data, scene, folder, arguments, level):
     row = Row(str(scene), dialect_of(scene))
-    reference, reference_spp = reference_of(data, scene)
+    reference_path, reference_spp = reference_of(data, scene)
     reference_spp = reference_spp or sample_count(data, scene)
     stem = "_".join(scene.with_suffix("").parts)
+
+    def rendered(file, label, spp, integrator=None, seed=0):
+        """(stats, picture)"""
+        path = folder / f"{stem}{label}.exr"
+        stats = render(program, data, file, path, spp, dialect, integrator, seed, arguments.reuse)
+        if stats["invalid_samples"]:
+            raise RuntimeError(f"{stats['invalid_samples']} invalid samples")
+        picture = read_picture(path, spp)
+        if not np.isfinite(picture.pixels).all() or not picture.pixels.any():
+            raise RuntimeError("not finite, or black")
+        return stats, picture
+
     try:
         dialect, reason = told_dialect(program, data, scene, folder)
         row.dialect = f"{row.dialect} ({reason})"
-        spp = rounded_up(max(LEAST_SPP, arguments.effort * reference_spp) if reference else arguments.spp)
-        ours_path = folder / f"{stem}.exr"
-        stats = render(program, data, scene, ours_path, spp, dialect, is_reused=arguments.reuse)
-        if stats["invalid_samples"]:
-            raise RuntimeError(f"{stats['invalid_samples']} invalid samples")
-        ours, stderr = read_exr(ours_path)
-        if not np.isfinite(ours).all() or not ours.any():
-            raise RuntimeError("not finite, or black")
-        partner = PARTNERS.get(stats["integrator"])
-        if reference:
-            other = read_rgb(reference)
-            if other.shape != ours.shape:
-                raise RuntimeError(f"the reference has {other.shape[1]} x {other.shape[0]} pixels")
-            share = spp / reference_spp
-            found = compare(ours, stderr, spp, other, share, level)
+        is_upright = True
+        if reference_path:
+            spp = rounded_up(max(LEAST_SPP, arguments.effort * reference_spp))
+            stats, ours = rendered(scene, "", spp)
+            other = Picture(read_rgb(reference_path), reference_spp)
+            if other.pixels.shape != ours.pixels.shape:
+                raise RuntimeError(f"the reference has {other.pixels.shape[1]} x {other.pixels.shape[0]} pixels")
+            found = compare(ours, other, level)
             against = f"reference ({reference_spp} spp)"
-            variance = stderr.astype(np.float64) ** 2 * (1 + share)
-            is_upright = is_right_way_round(ours.astype(np.float64), variance, other)
+            variance = ours.stderr.astype(np.float64) ** 2 * (1 + spp / reference_spp)
+            is_upright = is_right_way_round(ours.pixels.astype(np.float64), variance, other.pixels)
+            spp_text = f"{spp} spp"
             explanation = next((e for e in EXPLANATIONS if row.file.startswith(e.scene)), None)
-            if explanation and not is_agreed(found):
+            if explanation and not found.is_agreed:
                 row.why = explanation.why
-                explained, explained_stderr = ours, stderr
+                explained = ours
                 if explanation.altered:
-                    path = folder / f"{stem}.altered.exr"
-                    render(program, data, altered_copy(data / scene, explanation, folder), path, spp, dialect,
-                           is_reused=arguments.reuse)
-                    explained, explained_stderr = read_exr(path)
-                after = compare(explained, explained_stderr, spp, other, share, level,
-                                least_brightness=explanation.least_brightness, rim_of=explanation.rim_of)
-        elif partner:
-            other_path = folder / f"{stem}.{partner}.exr"
-            render(program, data, scene, other_path, spp, dialect, partner, seed=1, is_reused=arguments.reuse)
-            other, other_stderr = read_exr(other_path)
-            both = np.sqrt(stderr ** 2 + other_stderr ** 2)
-            is_upright = True
-            found = compare(ours, both, spp, other, 0.0, level, FACTOR_WHITE)
-            explanation = next((e for e in EXPLANATIONS if row.file.startswith(e.scene)), None)
-            if explanation and not is_agreed(found):
-                row.why = explanation.why
-                copy = altered_copy(data / scene, explanation, folder)
-                pair = []
-                for seed, name in enumerate((stats["integrator"], partner)):
-                    path = folder / f"{stem}.altered.{name}.exr"
-                    render(program, data, copy, path, spp, dialect, name, seed, arguments.reuse)
-                    pair += read_exr(path)
-                after = compare(pair[0], np.sqrt(pair[1] ** 2 + pair[3] ** 2), spp, pair[2], 0.0, level, FACTOR_WHITE)
-            against = f"`{partner}`"
+                    copy = altered_copy(data / scene, explanation, folder)
+                    explained = rendered(copy, ".altered", spp)[1]
+                after = compare(explained, other, level, explanation.least_brightness, explanation.rim_of)
         else:
-            row.result, row.is_good = "renders; nothing to compare with", True
-            row.figures = f"{spp} spp"
-            return row
+            own_pilot = rendered(scene, ".pilot", REPLICATES, seed=2)
+            partner = partner_of(data, scene, own_pilot[0]["integrator"])
+            if not partner:
+                row.result, row.is_good = "renders; nothing to compare with", True
+                row.figures = f"{REPLICATES} spp"
+                return row
+            partner_pilot = rendered(scene, f".pilot.{partner}", REPLICATES, partner, seed=3)
+            spp, partner_spp = balanced_spp((own_pilot, partner_pilot), arguments.precision / 100)
+            stats, ours = rendered(scene, "", spp)
+            found = compare(ours, rendered(scene, f".{partner}", partner_spp, partner, seed=1)[1], level)
+            against = f"`{partner}`"
+            spp_text = f"{spp} and {partner_spp} spp"
     except RuntimeError as problem:
         row.result, row.figures = "FAILS", str(problem)
         return row
-    row.is_good = is_agreed(found)
+    row.is_good = found.is_agreed
     row.result = f"agrees with {against}" if row.is_good else f"DISAGREES with {against}"
-    row.figures = f"{figures_of(found)}; {spp} spp"
+    row.figures = f"{figures_of(found)}; {spp_text}"
     if row.why:
-        row.is_good = is_agreed(after)
+        row.is_good = after.is_agreed
         row.result = f"{'differs, explained' if row.is_good else 'DISAGREES, NOT as explained'}: {against}"
         row.figures += f". As explained: {figures_of(after)}"
     if not is_upright:
         row.result, row.is_good = "MIRRORED", False
     row.figure = folder / f"{stem}.png"
-    save_figure(row.figure, ours, found.z_map)
+    save_figure(row.figure, ours.pixels, found.z_map)
     return row
-
-
-def is_agreed(found):
-    return max(found.max_z, abs(found.global_z)) <= found.limit_z
 
 
 def figures_of(found):
     return (f"max abs z {found.max_z:.2f} (expected {found.expected_max_z:.1f}, limit {found.limit_z:.1f}), "
-            f"rms z {found.rms_z:.2f}, whole picture {100 * found.global_difference:+.3f} % (z {found.global_z:+.1f}), "
+            f"rms z {found.rms_z:.2f}, whole picture {100 * found.global_difference:+.3f} +- "
+            f"{100 * found.global_stderr:.3f} % (z {found.global_z:+.1f}, limit {found.global_limit_z:.1f}), "
             f"noise ratio {found.noise_ratio:.2f}, p {found.p_value:.2g}")
-
-
-def without_twins(obj):
-    """An OBJ file less the faces whose corners are where those of an earlier face are."""
-    vertices, known, lines = [], set(), []
-    for line in obj.splitlines():
-        words = line.split()
-        if words[:1] == ["v"]:
-            vertices.append(tuple(words[1:4]))
-        if words[:1] == ["f"]:
-            face = frozenset(vertices[int(corner.split("/")[0]) - 1] for corner in words[1:])
-            if face in known:
-                continue
-            known.add(face)
-        lines.append(line)
-    return "\n".join(lines) + "\n"
 
 
 def altered_copy(path, explanation, folder):
@@ -300,10 +304,7 @@ def altered_copy(path, explanation, folder):
         if old not in text:
             raise RuntimeError(f"has no {old}, which its explanation changes")
         text = text.replace(old, new)
-    meshes = folder.resolve() if explanation.has_twins else path.parent.resolve()
-    for mesh in set(re.findall(r'name="filename" value="([^"]*[.]obj)"', text)) if explanation.has_twins else ():
-        (meshes / mesh).write_text(without_twins((path.parent / mesh).read_text()))
-    text = re.sub(r'(name="filename" value=")', lambda m: f"{m[1]}{meshes}/", text)
+    text = re.sub(r'(name="filename" value=")', lambda m: f"{m[1]}{path.parent.resolve()}/", text)
     copy = (folder / f"altered_{path.name}").resolve()
     copy.write_text(text)
     return copy
@@ -324,7 +325,8 @@ def z_colors(z):
     """White at 0, red where ours is brighter, blue where it is darker, by the channel of the largest |z|."""
     worst = np.take_along_axis(z, np.abs(z).argmax(axis=2)[..., None], axis=2)[..., 0]
     x = np.clip(worst / FIGURE_Z, -1, 1)
-    return np.rint(255 * np.stack([1 + np.minimum(x, 0), 1 - np.abs(x), 1 - np.maximum(x, 0)], axis=2)).astype(np.uint8)
+    colors = np.stack([1 + np.minimum(x, 0), 1 - np.abs(x), 1 - np.maximum(x, 0)], axis=2)
+    return np.rint(255 * colors).astype(np.uint8)
 
 
 def save_figure(path, ours, z):
@@ -333,22 +335,23 @@ def save_figure(path, ours, z):
     figure = Image.new("RGB", (2 * size[0] + 4, size[1]), "white")
     figure.paste(Image.fromarray(srgb(ours)).resize(size, Image.BOX), (0, 0))
     figure.paste(Image.fromarray(z_colors(z)).resize(size, Image.NEAREST), (size[0] + 4, 0))
-    figure.quantize(128).save(path, optimize=True)
+    figure.save(path, optimize=True)
 
 
 PAGE = """# The Nori family, file by file
 
-The tests and scenes of courses that use a renderer of the Nori family, run as they stand. This page is
-written by `scripts/check_nori_family.py --write docs/nori.md`, which anybody who has the files can run again; it ends
-with 1 where something disagrees. The files themselves, and the reference images, belong to their authors and are not
-part of the project.
+The tests and scenes of courses that use a renderer of the Nori family, run as they stand. This page is written by
+`scripts/check_nori_family.py --write docs/nori.md`, which anybody who has the files can run again; it ends with 1
+where something disagrees. The files themselves, and the reference images, belong to their authors and are not part of
+the project.
 
-Dialects are those of `docs/scene_format.md`: in brackets, what told it. Where it says `--dialect`, the file itself tells
-nothing, and its course was named on the command line.
+Dialects are those of `docs/scene_format.md`: in brackets, what told it. Where it says `--dialect`, the file itself
+tells nothing, and its course was named on the command line.
 
 ## Tests
 
-`etendue test` with seeds {seeds}, at the level that each file asks for. Least p: of all cases and seeds, each by itself.
+`etendue test` with seeds {seeds}, at the level that each file asks for. Least p: of all cases and seeds, each by
+itself.
 
 | file | dialect | result | figures |
 |---|---|---|---|
@@ -357,12 +360,18 @@ nothing, and its course was named on the command line.
 ## Scenes
 
 Means of 16 x 16 pixels are compared with the reference image, channel by channel, and the whole picture too; both
-noises are estimated, and the limit of abs z is such that one run in {runs} would tell of a disagreement where there is none
-(`scripts/image_blocks.py` says how and why). "Expected": the median of the largest abs z of as many blocks. "rms z" is 1
-where the noise is well estimated, below where edges make the estimate too large. "Noise ratio" is the reference's noise,
-by its own scatter, in units of what our samples predict for its number of samples; far above 1 it was sampled in another
-way than ours. Where there is no reference, the same scene by another integrator that must agree stands in.
-{effort}
+noises are estimated, and the limits of abs z are such that one run in {runs} would tell of a disagreement where there
+is none (`scripts/image_blocks.py` says how and why). "+-": one standard error. "Expected": the median of the largest
+abs z of as many blocks. "rms z" is 1 where the noise is well estimated, below where edges make the estimate too
+large. "Noise ratio" is the reference's noise, by its own scatter, in units of what our samples predict for its number
+of samples; far above 1 it was sampled in another way than ours. Samples a pixel: for each one of the reference
+{effort:g} of ours, at least {least_spp}.
+
+Where there is no reference, the same scene by another integrator that must agree stands in; one whose contributions
+the lights' radiance bounds, where there is a choice, since light samples close to a light have infinite variance. A
+pilot of {replicates} samples a pixel, with other random numbers, tells how many each of the two needs for the whole
+picture's difference to have a standard error of {precision:g} %, for the fewest rays; at least {least_rays} rays a
+pixel are cast, at most {most_rays}. The count is that of the scene's own integrator and of the other.
 
 | file | dialect | result | figures |
 |---|---|---|---|
@@ -396,7 +405,8 @@ def write_page(path, rows, test_count, arguments):
         shutil.copyfile(row.figure, images / row.figure.name)
     path.write_text(PAGE.format(
         seeds=", ".join(map(str, SEEDS)), runs=f"{1 / FALSE_ALARMS:,.0f}", tests=table(rows[:test_count]),
-        effort=f"Our samples for each one of the reference: {arguments.effort:g}, at least {LEAST_SPP} a pixel.",
+        effort=arguments.effort, least_spp=LEAST_SPP, replicates=REPLICATES, precision=arguments.precision,
+        least_rays=LEAST_RAYS, most_rays=MOST_RAYS,
         scenes=table(rows[test_count:]),
         why="\n".join(f"- {', '.join(files)}: {why}" for why, files in reasons.items()) or "None.",
         figures="\n\n".join(f"`{r.file}`\n\n![{r.file}](images/nori/{r.figure.name})" for r in shown)))
@@ -404,11 +414,13 @@ def write_page(path, rows, test_count, arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--etendue", default=ROOT / "build/release/etendue", help="the program [build/release/etendue]")
+    parser.add_argument("--etendue", default=ROOT / "build/release/etendue",
+                        help="the program [build/release/etendue]")
     parser.add_argument("--data", type=Path, default=os.environ.get("ETENDUE_TEST_DATA", ROOT.parent / "shared/data"))
     parser.add_argument("--only", metavar="PATTERN", default="", help="files whose path this regular expression fits")
     parser.add_argument("--effort", type=float, default=4, help="our samples for each one of the reference [4]")
-    parser.add_argument("--spp", type=int, default=16, help="samples of scenes without a reference [16]")
+    parser.add_argument("--precision", type=float, default=0.15, metavar="PERCENT",
+                        help="standard error of the whole picture, of scenes without a reference [0.15]")
     parser.add_argument("--threads", type=int, default=0, help="0: all cores [0]")
     parser.add_argument("--out", type=Path, default=ROOT / "out/nori", help="where renders are put [out/nori]")
     parser.add_argument("--reuse", action="store_true", help="take renders that are there from an earlier run")
