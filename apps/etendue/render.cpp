@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -217,7 +218,7 @@ int run(const Options& options) {
   const SceneDesc description = read_nori_xml(options.scene_file, options.run.dialect());
   std::vector<std::string> written = options.outputs;
   if (!options.stats_file.empty()) written.push_back(options.stats_file);
-  check_overwrites_nothing(written, files_of(description, options.scene_file));
+  if (options.replay.empty()) check_overwrites_nothing(written, files_of(description, options.scene_file));
   const ThreadLimit thread_limit(options.run.threads);
   LoadedScene loaded = load_scene(description);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
@@ -300,12 +301,12 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--integrator", options->integrator, "Instead of the file's; see etendue info");
   command->add_option("--sampler", options->sampler, "Instead of the file's: independent or sobol");
   command->add_option("--spp", options->samples_per_pixel, "Samples a pixel in all, instead of the file's")
-      ->check(whole_number_problem);
+      ->check(whole_number(std::numeric_limits<int>::max()));
   command
       ->add_option("--replicates", options->replicates,
                    "Independent parts that the samples of a pixel are split into, from which its error is "
                    "estimated; must divide --spp [largest divisor up to 8]")
-      ->check(whole_number_problem);
+      ->check(whole_number(std::numeric_limits<int>::max()));
   add_run_options(*command, options->run);
   command->add_option("--stats", options->stats_file, "JSON file for settings, times and counts");
   command->add_option("--replay", options->replay,

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,9 +21,9 @@ struct RunOptions {
   std::optional<Dialect> dialect() const;  ///< Throws InputError for an unknown one.
 };
 
-/// Says what is wrong with the text of a whole number, for CLI11's check(); empty where nothing is. CLI11
-/// itself takes 010 for 8, and what is too large for the largest.
-std::string whole_number_problem(const std::string& text);
+/// For CLI11's check(): what is wrong with the text of a whole number whose size is at most `most`; empty
+/// where nothing is. CLI11 itself takes 010 for 8, and what is too large for the largest.
+std::function<std::string(const std::string&)> whole_number(std::uint64_t most);
 
 /// Adds --seed, --threads, --isa and --dialect. `options` must live as long as the command.
 void add_run_options(CLI::App& command, RunOptions& options);

@@ -29,6 +29,7 @@ struct Options {
 
 struct Counts {
   int cases = 0, failed = 0, errors = 0, unreadable_files = 0;
+  int left_out = 0, files_left_out = 0;  ///< By Ctrl-C.
 };
 
 std::string number_text(double value, int digits = 6) {
@@ -91,7 +92,7 @@ void run_file(const Options& options, const TestSettings& settings, const std::s
     for (; warned < warnings.size(); ++warned)
       if (!options.is_quiet) fmt::print(stderr, "warning: {}\n", warnings[warned]);
   };
-  run_test_file(
+  const TestFileResult result = run_test_file(
       test, settings,
       [&](const CaseResult& result) {
         warn();
@@ -103,7 +104,22 @@ void run_file(const Options& options, const TestSettings& settings, const std::s
         all.push_back(to_json(file, number, result));
       },
       warnings);
+  counts.left_out += result.left_out;
   warn();
+}
+
+/// A file that cannot be read is reported when its turn comes.
+std::vector<std::filesystem::path> files_read(const Options& options) {
+  std::vector<std::filesystem::path> all;
+  for (const std::string& file : options.files) {
+    all.emplace_back(file);
+    try {
+      for (std::filesystem::path& part : files_of(read_test_file(file, options.run.dialect()), file))
+        all.push_back(std::move(part));
+    } catch (const InputError&) {
+    }
+  }
+  return all;
 }
 
 void print_summary(const Options& options, const Counts& counts) {
@@ -115,23 +131,31 @@ void print_summary(const Options& options, const Counts& counts) {
   if (counts.unreadable_files > 0)
     text += fmt::format("; {} file{} could not be used", counts.unreadable_files,
                         counts.unreadable_files == 1 ? "" : "s");
-  if (stop_requested) text += "; interrupted, the others were not run";
+  if (counts.left_out > 0)
+    text += fmt::format("; interrupted, {} case{} not run", counts.left_out, counts.left_out == 1 ? "" : "s");
+  if (counts.files_left_out > 0)
+    text += fmt::format("; interrupted, {} file{} not run", counts.files_left_out,
+                        counts.files_left_out == 1 ? "" : "s");
   fmt::print("{}\n", text);
 }
 
 int run(const Options& options) {
-  if (!options.json_file.empty()) check_destination(options.json_file);
-  if (!options.json_file.empty())
-    check_overwrites_nothing({options.json_file}, {options.files.begin(), options.files.end()});
+  options.run.dialect();  // An unknown one is an error once, not for each file.
+  if (!options.json_file.empty()) {
+    check_destination(options.json_file);
+    check_overwrites_nothing({options.json_file}, files_read(options));
+  }
   const TestSettings settings{options.run.seed, options.run.isa(), sampler_from_name(options.sampler),
                               &stop_requested};
-  options.run.dialect();  // An unknown one is an error once, not for each file.
   const ThreadLimit thread_limit(options.run.threads);
   Counts counts;
   Json all = Json::array();
   catch_interrupts();
   for (const std::string& file : options.files) {
-    if (stop_requested) break;
+    if (stop_requested) {
+      ++counts.files_left_out;
+      continue;
+    }
     try {
       run_file(options, settings, file, counts, all);
     } catch (const InputError& error) {  // The other files are tested all the same.
@@ -147,7 +171,7 @@ int run(const Options& options) {
     std::fwrite(text.data(), 1, text.size(), out.stream());
     out.commit();
   }
-  if (stop_requested) return interrupted;
+  if (counts.left_out > 0 || counts.files_left_out > 0) return interrupted;
   if (counts.unreadable_files > 0 || counts.errors > 0) return bad_input;
   return counts.failed > 0 ? check_failed : done;
 }

@@ -51,7 +51,8 @@ std::int32_t Geometry::add_disk(const Disk& added, SurfaceIds ids) {
 void Geometry::add_row(SurfaceIds ids) {
   material.push_back(ids.material);
   light.push_back(ids.light);
-  for (std::vector<std::int32_t>* column : {&first_triangle, &has_normals, &has_uvs, &triangles}) column->push_back(0);
+  for (std::vector<std::int32_t>* column : {&first_triangle, &has_normals, &has_uvs, &triangles})
+    column->push_back(0);
   for (std::vector<std::int32_t>* column : {&sphere, &disk}) column->push_back(-1);
 }
 

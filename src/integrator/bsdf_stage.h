@@ -53,7 +53,12 @@ template <class F>
     const Mask<F> is_number =
         mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
                  is_finite_nonnegative(throughput.b), sample.pdf_solid_angle >= F(0), dot(wi, wi) < F(2));
-    add_lost<F>(block, i, mask_and(vertex.is_there, mask_not(is_number)));
+    const Mask<F> is_lost = mask_and(vertex.is_there, mask_not(is_number));
+    // What is not a number must reach the sum, where it is reported.
+    if (any(is_lost)) {
+      const F nan(std::numeric_limits<float>::quiet_NaN());
+      add_radiance<F>(block, i, is_lost, Color<F>{nan, nan, nan});
+    }
     Mask<F> goes_on =
         mask_and(vertex.is_there, is_number, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
                  mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));

@@ -10,7 +10,6 @@
 #include "integrator/vertex.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace etendue {
 
@@ -62,11 +61,9 @@ template <class F>
     const Vec3<F> along = sample.end - origin;
     if (scene.medium) scattered = scattered * scene.medium->transmittance(origin, along);
 
-    const Mask<F> is_segment = dot(along, along) < F(std::numeric_limits<float>::infinity());
-    add_lost<F>(block, i, mask_and(is_lit, mask_not(is_segment)));
     store_lanes(block.unshadowed, i, scattered * load_lanes<F>(path.throughput, i));
     // Not "greater than 0": a NaN must reach the sum, where it is reported.
-    store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, is_segment, mask_not(is_black(scattered))));
+    store_mask<F>(&block.shadow_is_needed[i], mask_and(is_lit, mask_not(is_black(scattered))));
     store_lanes(block.shadow_origin, i, origin);
     store_lanes(block.shadow_direction, i, along);
     store_lanes(&block.aim[i], sample.light * Int<F>(light_pieces) + sample.piece);

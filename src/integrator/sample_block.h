@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
 
 namespace etendue {
 
@@ -117,14 +116,6 @@ void add_radiance(SampleBlock& block, int i, const Mask<F>& m, const Color<F>& a
   add(block.radiance.r.data(), added.r);
   add(block.radiance.g.data(), added.g);
   add(block.radiance.b.data(), added.b);
-}
-
-/// Adds NaN where a computation has lost its way, so that the sum tells of it: such a sample is counted and
-/// reported, never dropped.
-template <class F>
-void add_lost(SampleBlock& block, int i, const Mask<F>& m) {
-  const F nan(std::numeric_limits<float>::quiet_NaN());
-  if (any(m)) add_radiance<F>(block, i, m, Color<F>{nan, nan, nan});
 }
 
 }  // namespace etendue

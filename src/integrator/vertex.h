@@ -43,7 +43,7 @@ struct HitNormals {
         scene.geometry, geometry, load_lanes<Int<F>>(&hits.primitive[i]), barycentric, is_smooth);
     const F size_sq = dot(smooth, smooth);
     constexpr float cancelled = 1e-12f;
-    ns = select(mask_and(is_smooth, size_sq > F(cancelled)), smooth * (F(1) / sqrt(size_sq)), ng);
+    ns = select(mask_and(is_smooth, mask_not(size_sq <= F(cancelled))), smooth * (F(1) / sqrt(size_sq)), ng);
   }
 };
 

@@ -7,29 +7,41 @@
 
 namespace etendue {
 
+/// Thrown out of a case that is cut short; nobody but run_case catches it.
+struct Stopped {};
+
+/// For loops over samples: as often as a fraction of a second needs.
+inline void throw_if_stopped(const TestSettings& settings) {
+  if (settings.stop && *settings.stop) throw Stopped();
+}
+
 /// All that a kind of test needs to know of the file and of the run.
 struct TestRun {
   const SceneDesc& test;
   const TestSettings& settings;
   const CaseCallback& on_case;
   std::vector<std::string>& warnings;
-  std::vector<CaseResult> results{};
+  TestFileResult result{};
 
   /// Runs `measure(result)`, which fills in the numbers, and judges nothing that is thrown as a pass.
   template <class Measure>
-  void run_case(CaseResult result, Measure&& measure) {
-    if (settings.stop && *settings.stop) return;
+  void run_case(const CaseResult& planned, Measure&& measure) {
     const auto start = std::chrono::steady_clock::now();
+    CaseResult measured = planned;
     try {
-      measure(result);
+      throw_if_stopped(settings);
+      measure(measured);
+    } catch (const Stopped&) {
+      ++result.left_out;
+      return;
     } catch (const InputError& error) {
-      result.is_passed = false;
-      result.is_error = true;
-      result.problem = error.what();
+      measured = planned;
+      measured.is_error = true;
+      measured.problem = error.what();
     }
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    results.push_back(result);
-    if (on_case) on_case(results.back());
+    measured.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.cases.push_back(measured);
+    if (on_case) on_case(measured);
   }
 
   void warn(const std::vector<UnreadKey>& unread) {

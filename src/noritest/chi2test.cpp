@@ -114,13 +114,14 @@ struct Observed {
 };
 
 template <class Model>
-Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, SamplerKind sampler,
+Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, const TestSettings& settings,
                  std::uint64_t seed) {
   constexpr std::int64_t samples_a_task = 16384;
-  const RandomSquares u_bsdf(sampler, seed);
+  const RandomSquares u_bsdf(settings.sampler, seed);
   std::atomic<bool> has_dirac{false};
   tbb::combinable<Observed> parts([&] { return Observed{std::vector<double>(rules.cells())}; });
   const auto run_task = [&](std::int64_t task) {
+    throw_if_stopped(settings);
     Observed& part = parts.local();
     const std::int64_t end = std::min((task + 1) * samples_a_task, rules.sample_count);
     for (std::int64_t i = task * samples_a_task; i < end; ++i) {
@@ -151,13 +152,15 @@ Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, Sa
 }
 
 template <class Model>
-std::vector<double> expect(const Model& model, const Vec3f& wo, const Chi2Rules& rules) {
+std::vector<double> expect(const Model& model, const Vec3f& wo, const Chi2Rules& rules,
+                           const TestSettings& settings) {
   // No end of an interval is evaluated, where a horizon would count as above and below.
   using Rule = boost::math::quadrature::gauss_kronrod<double, quadrature_points>;
   constexpr unsigned most_halvings = 6;
   constexpr double tolerance = 1e-5;
   std::vector<double> counts(rules.cells());
   tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t cell) {
+    throw_if_stopped(settings);
     const int row = int(cell) / rules.columns(), column = int(cell) % rules.columns();
     const double width = 2 * pi_d / rules.columns();
     const auto over_row = [&](double z) {
@@ -175,16 +178,20 @@ std::vector<double> expect(const Model& model, const Vec3f& wo, const Chi2Rules&
   return counts;
 }
 
-/// Throws where samples lie so close together that the quadrature's points may have missed the lobe: a
-/// misfit then says nothing about the density.
-void require_resolved(const Observed& observed, const Chi2Rules& rules) {
+/// Throws where samples lie so close together that they are in a single cell, or that the quadrature's points
+/// may have missed their lobe and the density's integral lacks them: that says nothing about the density.
+void require_resolved(const CaseResult& result, const Observed& observed, const std::vector<double>& expected,
+                      const Chi2Rules& rules) {
   const double count = std::accumulate(observed.counts.begin(), observed.counts.end(), 0.0);
+  const double integral = std::accumulate(expected.begin(), expected.end(), 0.0);
+  const bool is_unresolved = std::isnan(result.p_value) || integral < count - 5 * std::sqrt(count);
   const double lobe_sr = count / observed.density_sum;
   const double resolved_sr = 4 * pi_d / double(rules.cells()) / (quadrature_points * quadrature_points);
-  if (lobe_sr < resolved_sr)
+  if (is_unresolved && lobe_sr < resolved_sr)
     throw InputError(
-        fmt::format("its lobe of about {:.2g} sr is too narrow for a chi2test with {} rows of cells, "
-                    "which sees lobes from {:.2g} sr on\n"
+        fmt::format("its lobe of about {:.2g} sr is too narrow for a chi2test with {} rows of cells, which "
+                    "may miss what is "
+                    "narrower than {:.2g} sr\n"
                     "raise 'resolution', or test its mean with a ttest",
                     lobe_sr, rules.rows, resolved_sr));
 }
@@ -206,7 +213,7 @@ void judge(CaseResult& result, const Observed& observed, const std::vector<doubl
   else if (std::isnan(test.p_value))
     result.problem = "the density is not finite, negative, or in fewer than two cells";
   result.is_passed = result.problem.empty() && !is_rejected(result.p_value, rules.level, rules.tests);
-  if (!result.is_passed && observed.invalid_samples == 0) require_resolved(observed, rules);
+  if (!result.is_passed && observed.invalid_samples == 0) require_resolved(result, observed, expected, rules);
 }
 
 }  // namespace
@@ -235,8 +242,8 @@ void run_chi2test(TestRun& run) {
         std::visit(
             [&](const auto& model) {
               const auto at_point = model.at(Vec2f{0, 0}, true);
-              judge(measured, observe(at_point, wo, rules, run.settings.sampler, seed),
-                    expect(at_point, wo, rules), rules);
+              judge(measured, observe(at_point, wo, rules, run.settings, seed),
+                    expect(at_point, wo, rules, run.settings), rules);
             },
             material);
       });

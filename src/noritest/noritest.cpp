@@ -22,15 +22,15 @@ SceneDesc read_test_file(const std::filesystem::path& file, std::optional<Dialec
   return test;
 }
 
-std::vector<CaseResult> run_test_file(const SceneDesc& test, const TestSettings& settings,
-                                      const CaseCallback& on_case, std::vector<std::string>& warnings) {
+TestFileResult run_test_file(const SceneDesc& test, const TestSettings& settings, const CaseCallback& on_case,
+                             std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), test.warnings.begin(), test.warnings.end());
   TestRun run{test, settings, on_case, warnings};
   if (test.root.type == ttest_plugin.name)
     run_ttest(run);
   else
     run_chi2test(run);
-  return std::move(run.results);
+  return std::move(run.result);
 }
 
 }  // namespace etendue

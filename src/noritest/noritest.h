@@ -23,7 +23,7 @@ struct TestSettings {
   /// renderer fails less often than the level says, and a wrong one no later. Independent ones make them
   /// exact.
   SamplerKind sampler = SamplerKind::sobol;
-  const std::atomic<bool>* stop = nullptr;  ///< Where it is true, no further case is run.
+  const std::atomic<bool>* stop = nullptr;  ///< Once it is true, cases are left out, the running one too.
 };
 
 /// What became of one case. A number that the kind of test does not have is NaN.
@@ -44,6 +44,11 @@ struct CaseResult {
   double seconds = 0;
 };
 
+struct TestFileResult {
+  std::vector<CaseResult> cases{};
+  int left_out = 0;  ///< As TestSettings::stop asked.
+};
+
 /// Called after each case, in the order of the file.
 using CaseCallback = std::function<void(const CaseResult&)>;
 
@@ -57,7 +62,7 @@ SceneDesc read_test_file(const std::filesystem::path& file, std::optional<Dialec
 /// seed gives the same numbers whatever the number of threads. Throws InputError where the test itself does
 /// not make sense, such as a number of references that fits nothing; what is wrong with one case is in its
 /// result. Keys that nobody read and other warnings are appended to `warnings`.
-std::vector<CaseResult> run_test_file(const SceneDesc& test, const TestSettings& settings,
-                                      const CaseCallback& on_case, std::vector<std::string>& warnings);
+TestFileResult run_test_file(const SceneDesc& test, const TestSettings& settings, const CaseCallback& on_case,
+                             std::vector<std::string>& warnings);
 
 }  // namespace etendue

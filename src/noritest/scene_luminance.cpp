@@ -1,6 +1,7 @@
 #include "noritest/scene_luminance.h"
 
 #include "base/hash.h"
+#include "noritest/case_runner.h"
 #include "render/kernel.h"
 
 #include <algorithm>
@@ -59,6 +60,7 @@ SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrat
   tbb::enumerable_thread_specific<std::unique_ptr<SampleBlock>> blocks(
       [] { return std::make_unique<SampleBlock>(); });
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    throw_if_stopped(test);
     RenderSettings settings;
     settings.integrator = integrator;
     settings.samples_per_pixel = int(std::min(samples_a_task, count - std::int64_t(part) * samples_a_task));

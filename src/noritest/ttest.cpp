@@ -34,6 +34,8 @@ const Plugin ttest_plugin{
 
 namespace {
 
+constexpr std::int64_t samples_between_checks = 65536;
+
 struct TTestRules {
   double level;
   std::int64_t sample_count;
@@ -129,8 +131,10 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
     std::visit(
         [&](const auto& model) {
           const auto at_point = model.at(Vec2f{0, 0}, true);
-          for (std::int64_t i = 0; i < rules.sample_count; ++i)
+          for (std::int64_t i = 0; i < rules.sample_count; ++i) {
+            if (i % samples_between_checks == 0) throw_if_stopped(run.settings);
             samples.add(at_point.sample_(wo, u_bsdf[std::uint32_t(i)]).weight);
+          }
         },
         material);
     judge(measured, samples.luminances, samples.invalid, rules);
@@ -188,6 +192,7 @@ void test_emitter(TestRun& run, const Object& emitter, double distance, double r
     const Vec3f receiver{0, 0, float(distance)};
     Samples samples;
     for (std::int64_t i = 0; i < rules.sample_count; ++i) {
+      if (i % samples_between_checks == 0) throw_if_stopped(run.settings);
       const LightSample<float> sample =
           lights.sample<float>(0, 1, receiver, u_light.bits(std::uint32_t(i)), true);
       samples.add(sample.is_there ? sample.radiance_over_pdf : Colorf{0, 0, 0});

@@ -18,14 +18,19 @@ constexpr std::array all_isas{Isa::scalar, Isa::v2, Isa::v3, Isa::v4};
 constexpr std::array<std::string_view, 4> names{"scalar", "v2", "v3", "v4"};
 
 bool has_isa(Isa isa) {
-  // Feature by feature, as far as clang 16 can name them: it does not know "x86-64-v3".
   __builtin_cpu_init();
+#ifdef __clang__
+  // As far as clang 16 can name them: it does not know "x86-64-v3".
   const bool has_v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
   const bool has_v3 = has_v2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                       __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
   const bool has_v4 = has_v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                       __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
                       __builtin_cpu_supports("avx512vl");
+#else
+  const bool has_v2 = __builtin_cpu_supports("x86-64-v2"), has_v3 = __builtin_cpu_supports("x86-64-v3"),
+             has_v4 = __builtin_cpu_supports("x86-64-v4");
+#endif
   switch (isa) {
     case Isa::scalar:
       return true;

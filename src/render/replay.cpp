@@ -41,7 +41,7 @@ SampleTrace::Vertex vertex_of(const Scene& scene, const PathRules& rules, const 
   const PathColumns& path = block.path;
   const Vertex<F> vertex(scene, path.ray, path.hit, 0);
   SampleTrace::Vertex trace{number, branch, SampleTrace::Vertex::Kind::nothing, vertex.position, {},
-                            {},     {},          load_lanes<F>(block.radiance, 0)};
+                            {},     {},     load_lanes<F>(block.radiance, 0)};
   if (!vertex.is_there) return trace;
   trace.kind = vertex.is_surface ? SampleTrace::Vertex::Kind::surface : SampleTrace::Vertex::Kind::medium;
   const std::int32_t geometry = path.hit.geometry[0];

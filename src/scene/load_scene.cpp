@@ -139,10 +139,10 @@ class Loader {
     }
     add_shape_geometry(object, description_.directory, ids, radiance, geometry_, lights_, unread_, warnings_);
     if (has_texture(materials_.back()) && geometry_.triangles.back() > 0 && geometry_.has_uvs.back() == 0)
-      warnings_.push_back(format_message(object.location,
-                                         "this mesh has no texture coordinates: each of its triangles shows "
-                                         "the texture from (0, 0) to (1, 1), "
-                                         "as in Nori"));
+      warnings_.push_back(format_message(
+          object.location,
+          "this mesh has no texture coordinates: each of its triangles shows the same half of the "
+          "texture's unit square, as in Nori"));
   }
 
   static void once(bool is_there, const Object& object) {

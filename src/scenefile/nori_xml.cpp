@@ -27,14 +27,16 @@ std::vector<std::string> tags_inside(std::string_view tag) {
   const auto add = [&](const std::vector<std::string>& tags) {
     known.insert(known.end(), tags.begin(), tags.end());
   };
-  if (tag == "scene" || tag == "test" || tag == "mesh" || tag == "shape")
+  if (tag == "scene" || tag == "test")
     add(object_tags);
+  else if (tag == "mesh" || tag == "shape")
+    add({"bsdf", "brdf", "emitter", "luminaire"});
+  else if (tag == "bsdf" || tag == "brdf")
+    add({"texture"});
   else if (tag == "camera")
     add({"sampler", "rfilter"});
   else if (tag == "medium")
     add({"phase"});
-  else
-    add({"texture"});
   return known;
 }
 

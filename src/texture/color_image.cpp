@@ -10,13 +10,15 @@ namespace etendue {
 
 namespace {
 
-/// By its first bytes: names of images lie now and then. What is not a regular file is left to read_exr,
-/// which refuses it.
+/// By its first bytes: names of images lie now and then. What is not a regular file, or cannot be
+/// opened, is left to read_exr, which says so.
 ImageFormat format_of(const std::filesystem::path& file, const Location& where, const std::string& name) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return ImageFormat::exr;
   std::array<char, 4> begin{};
-  std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return ImageFormat::exr;
+  stream.read(begin.data(), begin.size());
   if (begin == std::array<char, 4>{'v', '/', '1', '\x01'}) return ImageFormat::exr;
   if (begin == std::array<char, 4>{'\x89', 'P', 'N', 'G'}) return ImageFormat::png;
   throw InputError(where, fmt::format("'{}' is neither an EXR nor a PNG image", name),

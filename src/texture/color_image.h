@@ -18,8 +18,9 @@ struct ColorImage {
   }
 };
 
-/// The EXR or PNG that the parameter `name` names, relative to `directory`; `encoding` is that of a PNG. Throws
-/// InputError where it is not there, not such an image, or without R, G and B, or Y, or a single channel.
+/// The EXR or PNG that the parameter `name` names, relative to `directory`; `encoding` is that of a PNG.
+/// Throws InputError where it is not there, not such an image, or without R, G and B, or Y, or a single
+/// channel.
 ColorImage read_color_image(const Parameters& parameters, std::string_view name,
                             const std::filesystem::path& directory, PngEncoding encoding);
 

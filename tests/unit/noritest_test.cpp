@@ -34,7 +34,8 @@ class NoriTest : public testing::Test {
     std::filesystem::remove(file);
     test::write_file(file, text);
     return run_test_file(read_test_file(file, dialect), {.seed = seed, .sampler = SamplerKind::independent},
-                         {}, warnings_);
+                         {}, warnings_)
+        .cases;
   }
   std::string error(const std::string& text) {
     return test::error_of([&] { run(text); });

@@ -11,7 +11,7 @@
 namespace etendue {
 namespace {
 
-LoadedScene small_scene() {
+LoadedScene small_scene(const std::string& more = "") {
   const test::TemporaryFolder folder;
   test::write_file(
       folder.path() / "scene.xml",
@@ -21,7 +21,8 @@ LoadedScene small_scene() {
       "<shape type='rectangle'><transform name='toWorld'><scale value='9'/></transform>"
       "<bsdf type='phong'/></shape>"
       "<shape type='sphere' name='lamp'><point name='center' value='1 0 1.5'/>"
-      "<float name='radius' value='0.6'/><emitter type='area'/></shape></scene>");
+      "<float name='radius' value='0.6'/><emitter type='area'/></shape>" +
+          more + "</scene>");
   return load_scene(read_nori_xml(folder.path() / "scene.xml"));
 }
 
@@ -122,6 +123,32 @@ TEST(ReplayOfSeveralBsdfSamples, NumbersVerticesAndBranches) {
   }
   EXPECT_EQ(left, 3);
   EXPECT_GT(trace.vertices.size(), 3u);
+}
+
+TEST(ReplayOfSeveralBsdfSamples, EachHasAFreeFlightOfItsOwn) {
+  const LoadedScene loaded = small_scene(
+      "<medium type='homogeneous'><color name='sigmaS' value='2'/><transform name='toWorld'><scale value='40 "
+      "40 40'/>"
+      "<translate value='-20 -20 -20'/></transform></medium>");
+  RenderSettings settings;
+  settings.integrator = integrator_from_name("direct_mis");
+  settings.integrator.rules.bsdf_samples = 4;
+  settings.samples_per_pixel = 32;
+  settings.replicates = 1;
+  int scattered = 0;
+  for (int index = 0; index < 32; ++index) {
+    float last = 0;
+    Vec3f at{};
+    for (const SampleTrace::Vertex& vertex : replay(loaded.scene, settings, {1, 1, 0, index}).vertices) {
+      if (vertex.number == 0) at = vertex.position;
+      if (vertex.number == 0 || vertex.kind != SampleTrace::Vertex::Kind::medium) continue;
+      const float flown = length(vertex.position - at);
+      EXPECT_GT(std::abs(flown - last), 1e-4f * flown);
+      last = flown;
+      ++scattered;
+    }
+  }
+  EXPECT_GT(scattered, 64);
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Replay,
