@@ -1,7 +1,9 @@
 #include "output_files.h"
 
 #include "base/error.h"
+#include "film/temporary_file.h"
 
+#include <cstdio>
 #include <fmt/format.h>
 #include <system_error>
 #include <variant>
@@ -49,6 +51,12 @@ void check_overwrites_nothing(const std::vector<std::string>& written,
         throw InputError(fmt::format(
             "{}: this file would be written twice\ngive each output a name of its own", written[i]));
   }
+}
+
+void write_text_file(const std::filesystem::path& file, const std::string& text) {
+  TemporaryFile out(file);
+  std::fwrite(text.data(), 1, text.size(), out.stream());
+  out.commit();
 }
 
 }  // namespace etendue::app

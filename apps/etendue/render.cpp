@@ -159,12 +159,6 @@ nlohmann::ordered_json stats(const Options& options, const RenderSettings& setti
   return json;
 }
 
-void write_text_file(const std::filesystem::path& file, const std::string& text) {
-  TemporaryFile out(file);
-  std::fwrite(text.data(), 1, text.size(), out.stream());
-  out.commit();
-}
-
 void warn(const Options& options, const std::vector<std::string>& warnings) {
   if (warnings.empty()) return;
   if (options.is_strict)

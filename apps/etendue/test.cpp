@@ -165,12 +165,7 @@ int run(const Options& options) {
     }
   }
   print_summary(options, counts);
-  if (!options.json_file.empty()) {
-    const std::string text = all.dump(2) + "\n";
-    TemporaryFile out(options.json_file);
-    std::fwrite(text.data(), 1, text.size(), out.stream());
-    out.commit();
-  }
+  if (!options.json_file.empty()) write_text_file(options.json_file, all.dump(2) + "\n");
   if (counts.left_out > 0 || counts.files_left_out > 0) return interrupted;
   if (counts.unreadable_files > 0 || counts.errors > 0) return bad_input;
   return counts.failed > 0 ? check_failed : done;

@@ -11,9 +11,11 @@ const Plugin constant_plugin{"texture",
                              {}};
 
 /// What several forks call it.
+constexpr std::string_view image_alias_name = "image_texture";
+
 Plugin image_plugin_alias() {
   Plugin alias = image_texture_plugin;
-  alias.name = "image_texture";
+  alias.name = image_alias_name;
   alias.meaning = "Another name of imagetexture.";
   return alias;
 }
@@ -34,7 +36,7 @@ ColorTexture read_color_texture(const Parameters& parameters, std::string_view n
   if (description->type == uv_texture_plugin.name) return make_uv_texture(*description, unread);
   if (description->type == constant_plugin.name)
     return nonnegative_color(Parameters(*description, constant_plugin, unread), "value");
-  if (description->type == image_texture_plugin.name || description->type == image_plugin_alias().name)
+  if (description->type == image_texture_plugin.name || description->type == image_alias_name)
     return make_image_texture(*description, directory, unread);
   throw unknown_plugin(*description, texture_plugins());
 }

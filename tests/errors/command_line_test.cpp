@@ -172,8 +172,7 @@ TEST_F(CommandLine, InterruptKeepsWhatWasRendered) {
                    "1", "--isa", "scalar"},
                   folder_.path());
   // The first line of progress comes after a second, and with the first tiles.
-  while (program.err_so_far().find("render: ") == std::string::npos && program.seconds() < 60)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
   program.send(SIGINT);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 3);
@@ -200,8 +199,7 @@ TEST_F(CommandLine, InterruptKeepsTheCasesThatWereRun) {
       "value=\"0\"/><string name=\"references\" value=\"0.5 0.5\"/>\n<bsdf type=\"mirrer\"/><bsdf "
       "type=\"phong\"/></test>");
   Program program({"test", "t.xml", "--json", "t.json", "--threads", "1"}, folder_.path());
-  while (program.out_so_far().find(" 1 ttest") == std::string::npos && program.seconds() < 60)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program.wait_until([&] { return program.out_so_far().find(" 1 ttest") != std::string::npos; });
   program.send(SIGINT);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 3);
@@ -278,8 +276,7 @@ TEST_F(CommandLine, AKilledRenderLeavesTheOldImage) {
   write_file(path("a.exr"), "old");
   Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "10000000", "--threads", "1"},
                   folder_.path());
-  while (program.err_so_far().empty() && program.seconds() < 60)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program.wait_until([&] { return !program.err_so_far().empty(); });
   program.send(SIGKILL);
   EXPECT_EQ(program.wait().exit_code, -SIGKILL);
   EXPECT_EQ(read_file(path("a.exr")), "old");

@@ -139,20 +139,23 @@ int differing_pixels(const Film& a, const Film& b) {
   return count;
 }
 
+Film render_by(int threads, const Scene& scene, RenderSettings settings) {
+  settings.threads = threads;
+  return render(scene, settings).film;
+}
+
 TEST(Bits, AreTheSameForAnyNumberOfThreadsAndAgain) {
   const LoadedScene loaded = everything_scene(40);
   for (const Isa isa : available_isas())
     for (const int samples : {1, 48, 1100}) {  // Many pixels a block, few, and more than one block a pixel.
       RenderSettings settings = render_settings("mis", samples, samples == 1 ? 1 : 4, 5);
       settings.isa = isa;
-      settings.threads = 1;
-      const Film once = render(loaded.scene, settings).film;
-      settings.threads = 2;
-      EXPECT_EQ(differing_pixels(once, render(loaded.scene, settings).film), 0)
+      const Film once = render_by(1, loaded.scene, settings);
+      EXPECT_EQ(differing_pixels(once, render_by(2, loaded.scene, settings)), 0)
           << isa_name(isa) << ", 2 threads";
       if (samples > 48) continue;
-      settings.threads = 1;
-      EXPECT_EQ(differing_pixels(once, render(loaded.scene, settings).film), 0) << isa_name(isa) << ", again";
+      EXPECT_EQ(differing_pixels(once, render_by(1, loaded.scene, settings)), 0)
+          << isa_name(isa) << ", again";
     }
 }
 
@@ -177,10 +180,8 @@ TEST(Bits, OfPathsAreTheSameForAnyNumberOfThreads) {
     for (const Isa isa : available_isas()) {
       RenderSettings settings = render_settings("path_mis", samples, samples == 1 ? 1 : 4, 5);
       settings.isa = isa;
-      settings.threads = 1;
-      const Film once = render(loaded.scene, settings).film;
-      settings.threads = 2;
-      EXPECT_EQ(differing_pixels(once, render(loaded.scene, settings).film), 0)
+      EXPECT_EQ(differing_pixels(render_by(1, loaded.scene, settings), render_by(2, loaded.scene, settings)),
+                0)
           << isa_name(isa) << ", " << samples << " samples, 2 threads";
     }
   }

@@ -53,6 +53,12 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
+  /// Until `is_so()`, or a minute has passed.
+  template <class Condition>
+  void wait_until(Condition&& is_so) const {
+    while (!is_so() && seconds() < 60) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+
   void send(int signal) const { kill(process_, signal); }
   std::string out_so_far() const { return read_file(streams_.path() / "out"); }
   std::string err_so_far() const { return read_file(streams_.path() / "err"); }
