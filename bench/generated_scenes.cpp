@@ -49,7 +49,7 @@ Phong glossy(float exponent) {
 Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
   Geometry geometry;
   Lights lights;
-  const std::vector<Bsdf> materials{Diffuse{}, glossy(50)};
+  const std::vector<Material> materials{Diffuse{}, glossy(50)};
   geometry.add_mesh(tessellate(grid, has_normals,
                                [](double u, double v) {
                                  const double x = 10 * v - 5, z = 10 * u - 5;

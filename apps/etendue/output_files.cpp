@@ -1,7 +1,7 @@
 #include "output_files.h"
 
 #include "base/error.h"
-#include "film/temporary_file.h"
+#include "base/temporary_file.h"
 
 #include <cstdio>
 #include <fmt/format.h>

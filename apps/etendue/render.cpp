@@ -1,9 +1,9 @@
 #include "render/render.h"
 
 #include "base/hash.h"
+#include "base/temporary_file.h"
 #include "commands.h"
-#include "film/image_file.h"
-#include "film/temporary_file.h"
+#include "image/image_file.h"
 #include "interrupt.h"
 #include "output_files.h"
 #include "progress.h"

@@ -1,6 +1,6 @@
 #include "base/error.h"
+#include "base/temporary_file.h"
 #include "commands.h"
-#include "film/temporary_file.h"
 #include "interrupt.h"
 #include "noritest/noritest.h"
 #include "output_files.h"

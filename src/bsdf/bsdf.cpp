@@ -9,8 +9,8 @@ const std::vector<Plugin>& bsdf_plugins() {
   return plugins;
 }
 
-Bsdf make_bsdf(const Object& description, const std::filesystem::path& directory,
-               std::vector<UnreadKey>& unread) {
+Material make_material(const Object& description, const std::filesystem::path& directory,
+                       std::vector<UnreadKey>& unread) {
   if (description.type == diffuse_plugin.name) return make_diffuse(description, directory, unread);
   if (description.type == phong_plugin.name) return make_phong(description, unread);
   if (description.type == mirror_plugin.name) return make_mirror(description, unread);
@@ -21,7 +21,7 @@ Bsdf make_bsdf(const Object& description, const std::filesystem::path& directory
   throw unknown_plugin(description, bsdf_plugins());
 }
 
-bool has_texture(const Bsdf& material) {
+bool has_texture(const Material& material) {
   return std::visit([](const auto& model) { return model.has_texture(); }, material);
 }
 

@@ -1,6 +1,6 @@
 // The family of surface scattering models.
 //
-// To add one: write bsdf/NAME.h with the four functions of the concept below, templated on the lane type,
+// To add one: write bsdf/NAME.h with the four functions of the concepts below, templated on the lane type,
 // and its plugin description in bsdf/NAME.cpp; add it to the variant and to the table in bsdf.cpp; add it to
 // the lists of models in tests/statistical/bsdf_test.cpp.
 #pragma once
@@ -24,45 +24,47 @@ namespace etendue {
 
 /// What a material is at one point. All directions are unit, point away from the surface and are local: z is
 /// the shading normal; either may lie below it.
-///   eval_: f(wo, wi) in 1/sr, without the cosine; 0 where the model scatters nothing.
-///   pdf_solid_angle_: the density (1/sr) with which sample_ gives wi; both sides of MIS weights call it.
-///   sample_: wi with its weight f |cos(theta_i)| / pdf.
+///   eval: f(wo, wi) in 1/sr, without the cosine; 0 where the model scatters nothing.
+///   pdf_solid_angle: the density (1/sr) with which sample gives wi; both sides of MIS weights call it.
+///   sample: wi with its weight f |cos(theta_i)| / pdf.
 /// f is for radiance that arrives along wi and leaves along wo: across a boundary it has the factor
-/// (eta_o / eta_i)^2. eval_ and pdf_solid_angle_ of a Dirac lobe are 0 for every pair; its samples have an
+/// (eta_o / eta_i)^2. eval and pdf_solid_angle of a Dirac lobe are 0 for every pair; its samples have an
 /// infinite density.
 template <class B>
 concept BsdfModel = requires(const B& bsdf, const Vec3<float>& w, const Vec2<float>& u_bsdf) {
-  { bsdf.eval_(w, w) } -> std::same_as<Color<float>>;
-  { bsdf.pdf_solid_angle_(w, w) } -> std::same_as<float>;
-  { bsdf.sample_(w, u_bsdf) } -> std::same_as<BsdfSample<float>>;
+  { bsdf.eval(w, w) } -> std::same_as<Color<float>>;
+  { bsdf.pdf_solid_angle(w, w) } -> std::same_as<float>;
+  { bsdf.sample(w, u_bsdf) } -> std::same_as<BsdfSample<float>>;
 };
 
 /// A material gives what it is at a point: its textures looked up at the surface coordinates uv in the lanes
 /// given (the other lanes of uv may hold anything). One without textures gives itself.
 template <class M>
-concept Material = requires(const M& material, const Vec2<float>& uv, bool lanes) {
+concept MaterialModel = requires(const M& material, const Vec2<float>& uv, bool lanes) {
   requires BsdfModel<std::remove_cvref_t<decltype(material.at(uv, lanes))>>;
   { material.has_texture() } -> std::same_as<bool>;
 };
 
-using Bsdf = std::variant<Diffuse, Phong, Mirror, Dielectric, Microfacet, RoughConductor, RoughDielectric>;
-static_assert(Material<Diffuse> && Material<Phong> && Material<Mirror> && Material<Dielectric> &&
-              Material<Microfacet> && Material<RoughConductor> && Material<RoughDielectric>);
+using Material =
+    std::variant<Diffuse, Phong, Mirror, Dielectric, Microfacet, RoughConductor, RoughDielectric>;
+static_assert(MaterialModel<Diffuse> && MaterialModel<Phong> && MaterialModel<Mirror> &&
+              MaterialModel<Dielectric> && MaterialModel<Microfacet> && MaterialModel<RoughConductor> &&
+              MaterialModel<RoughDielectric>);
 
 const std::vector<Plugin>& bsdf_plugins();
 
 /// Image files are looked for in `directory`. Throws InputError for an unknown model (with the known ones) or
 /// a parameter out of range.
-Bsdf make_bsdf(const Object& description, const std::filesystem::path& directory,
-               std::vector<UnreadKey>& unread);
+Material make_material(const Object& description, const std::filesystem::path& directory,
+                       std::vector<UnreadKey>& unread);
 
 /// Whether the material needs to know uv.
-bool has_texture(const Bsdf& material);
+bool has_texture(const Material& material);
 
 /// f(model, lanes) for each distinct material among the lanes of `m`: what it is at `uv`, with the model's
 /// own type.
 template <class F, class Function>
-void for_each_material(const std::vector<Bsdf>& materials, const Int<F>& material, const Vec2<F>& uv,
+void for_each_material(const std::vector<Material>& materials, const Int<F>& material, const Vec2<F>& uv,
                        const Mask<F>& m, Function&& f) {
   for_each_unique<F>(material, m, [&](std::int32_t id, const Mask<F>& lanes) {
     std::visit([&](const auto& bsdf) { f(bsdf.at(uv, lanes), lanes); }, materials[std::size_t(id)]);

@@ -23,16 +23,16 @@ struct Dielectric {
   }
 
   template <class F>
-  Color<F> eval_(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
+  Color<F> eval(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
     return black<F>();
   }
   template <class F>
-  F pdf_solid_angle_(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
+  F pdf_solid_angle(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
     return F(0);
   }
 
   template <class F>
-  BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
+  BsdfSample<F> sample(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
     const Mask<F> is_outside = wo_local.z >= F(0);
     const F eta = indices.across<F>(is_outside), inverse_eta = indices.across<F>(mask_not(is_outside));
     const Refraction<F> refraction = refract(abs(wo_local.z), eta);

@@ -10,20 +10,20 @@ namespace etendue {
 
 /// f = albedo / pi
 template <class F>
-struct DiffuseAt {
+struct DiffuseBsdf {
   Color<F> albedo;  ///< Fraction of the light that is reflected.
 
-  Color<F> eval_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  Color<F> eval(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     return albedo * select(mask_and(wo_local.z > F(0), wi_local.z > F(0)), F(inv_pi), F(0));
   }
 
-  F pdf_solid_angle_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  F pdf_solid_angle(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     return select(wo_local.z > F(0), cosine_hemisphere_pdf_solid_angle(wi_local.z), F(0));
   }
 
-  BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
+  BsdfSample<F> sample(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
     const Vec3<F> wi_local = square_to_cosine_hemisphere(u_bsdf);
-    const F pdf = pdf_solid_angle_(wo_local, wi_local);
+    const F pdf = pdf_solid_angle(wo_local, wi_local);
     return {wi_local, albedo * select(pdf > F(0), F(1), F(0)), pdf};
   }
 };
@@ -33,7 +33,7 @@ struct Diffuse {
 
   bool has_texture() const { return !is_uniform(albedo); }
   template <class F>
-  DiffuseAt<F> at(const Vec2<F>& uv, const Mask<F>& lanes) const {
+  DiffuseBsdf<F> at(const Vec2<F>& uv, const Mask<F>& lanes) const {
     return {color_at(albedo, uv, lanes)};
   }
 };

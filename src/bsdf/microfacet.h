@@ -27,7 +27,7 @@ struct Microfacet {
   }
 
   template <class F>
-  Color<F> eval_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  Color<F> eval(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const Mask<F> is_above = mask_and(wo_local.z > F(0), wi_local.z > F(0));
     const Vec3<F> h = normalize(wo_local + wi_local);
     const F reflectance = refract(max(dot(wo_local, h), F(0)), F(indices.inside_over_outside)).reflectance;
@@ -38,7 +38,7 @@ struct Microfacet {
   }
 
   template <class F>
-  F pdf_solid_angle_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  F pdf_solid_angle(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const Vec3<F> h = normalize(wo_local + wi_local);
     const F lobe = distribution.density(h) * h.z / (F(4) * dot(wo_local, h));
     const F mixture = F(ks) * lobe + F(1 - ks) * cosine_hemisphere_pdf_solid_angle(wi_local.z);
@@ -46,15 +46,15 @@ struct Microfacet {
   }
 
   template <class F>
-  BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
+  BsdfSample<F> sample(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
     const LobeChoice<F> lobe(u_bsdf.x, ks);
     const Vec3<F> h = distribution.sample_normal(Vec2<F>{lobe.u, u_bsdf.y});
     const Vec3<F> mirrored = h * (F(2) * dot(wo_local, h)) - wo_local;
     const Vec3<F> wi_local =
         select(lobe.is_first, mirrored, square_to_cosine_hemisphere(Vec2<F>{lobe.u, u_bsdf.y}));
-    const F pdf = pdf_solid_angle_(wo_local, wi_local);
+    const F pdf = pdf_solid_angle(wo_local, wi_local);
     const F cos_over_pdf = select(pdf > F(0), wi_local.z / max(pdf, F(1e-37f)), F(0));
-    return {wi_local, eval_(wo_local, wi_local) * cos_over_pdf, pdf};
+    return {wi_local, eval(wo_local, wi_local) * cos_over_pdf, pdf};
   }
 
  private:

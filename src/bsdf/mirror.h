@@ -17,16 +17,16 @@ struct Mirror {
   }
 
   template <class F>
-  Color<F> eval_(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
+  Color<F> eval(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
     return black<F>();
   }
   template <class F>
-  F pdf_solid_angle_(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
+  F pdf_solid_angle(const Vec3<F>& /*wo_local*/, const Vec3<F>& /*wi_local*/) const {
     return F(0);
   }
 
   template <class F>
-  BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& /*u_bsdf*/) const {
+  BsdfSample<F> sample(const Vec3<F>& wo_local, const Vec2<F>& /*u_bsdf*/) const {
     const Mask<F> is_above = wo_local.z > F(0);
     const F one = select(is_above, F(1), F(0));
     return {{-wo_local.x, -wo_local.y, wo_local.z},

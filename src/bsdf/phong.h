@@ -26,7 +26,7 @@ struct Phong {
   }
 
   template <class F>
-  Color<F> eval_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  Color<F> eval(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const auto is_above = mask_and(wo_local.z > F(0), wi_local.z > F(0));
     const F lobe = lobe_power(wo_local, wi_local) * F((exponent + 2) * 0.5f * inv_pi);
     const auto channel = [&](float diffuse, float specular) {
@@ -36,7 +36,7 @@ struct Phong {
   }
 
   template <class F>
-  F pdf_solid_angle_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  F pdf_solid_angle(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const F lobe = lobe_power(wo_local, wi_local) * F((exponent + 1) * 0.5f * inv_pi);
     const F mixture = F(specular_probability) * lobe +
                       F(1 - specular_probability) * cosine_hemisphere_pdf_solid_angle(wi_local.z);
@@ -44,16 +44,16 @@ struct Phong {
   }
 
   template <class F>
-  BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
+  BsdfSample<F> sample(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
     const LobeChoice<F> lobe(u_bsdf.x, specular_probability);
     const Frame<F> mirror_frame({-wo_local.x, -wo_local.y, wo_local.z});
     const Vec3<F> around_mirror =
         mirror_frame.world_from_local(square_to_power_cosine(Vec2<F>{lobe.u, u_bsdf.y}, F(exponent)));
     const Vec3<F> around_normal = square_to_cosine_hemisphere(Vec2<F>{lobe.u, u_bsdf.y});
     const Vec3<F> wi_local = select(lobe.is_first, around_mirror, around_normal);
-    const F pdf = pdf_solid_angle_(wo_local, wi_local);
+    const F pdf = pdf_solid_angle(wo_local, wi_local);
     const F cos_over_pdf = select(pdf > F(0), wi_local.z / max(pdf, F(1e-37f)), F(0));
-    return {wi_local, eval_(wo_local, wi_local) * cos_over_pdf, pdf};
+    return {wi_local, eval(wo_local, wi_local) * cos_over_pdf, pdf};
   }
 
  private:

@@ -22,7 +22,7 @@ struct RoughConductor {
   }
 
   template <class F>
-  Color<F> eval_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  Color<F> eval(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const Vec3<F> h = normalize(wo_local + wi_local);
     const F scale = distribution.density(h) * distribution.shadowing_over_cos(wo_local.z) *
                     distribution.shadowing_over_cos(wi_local.z) * F(0.25f);
@@ -31,14 +31,14 @@ struct RoughConductor {
   }
 
   template <class F>
-  F pdf_solid_angle_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  F pdf_solid_angle(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const Vec3<F> h = normalize(wo_local + wi_local);
     const F pdf = distribution.density(h) * distribution.shadowing_over_cos(wo_local.z) * F(0.25f);
     return select(mask_and(wo_local.z > F(0), wi_local.z > F(0)), pdf, F(0));
   }
 
   template <class F>
-  BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
+  BsdfSample<F> sample(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
     const Vec3<F> wo{wo_local.x, wo_local.y, abs(wo_local.z)};  // From below it only must stay a number.
     const Vec3<F> h = distribution.sample_visible(wo, u_bsdf);
     const F cos_h = dot(wo, h);

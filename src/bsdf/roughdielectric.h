@@ -25,20 +25,20 @@ struct RoughDielectric {
   }
 
   template <class F>
-  Color<F> eval_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  Color<F> eval(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const Facet<F> facet(*this, wo_local, wi_local);
     const F f = facet.visible * distribution.shadowing_over_cos(abs(wi_local.z));
     return {f, f, f};
   }
 
   template <class F>
-  F pdf_solid_angle_(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
+  F pdf_solid_angle(const Vec3<F>& wo_local, const Vec3<F>& wi_local) const {
     const Facet<F> facet(*this, wo_local, wi_local);
     return facet.visible * facet.pdf_over_visible;
   }
 
   template <class F>
-  BsdfSample<F> sample_(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
+  BsdfSample<F> sample(const Vec3<F>& wo_local, const Vec2<F>& u_bsdf) const {
     const Vec2<F> u_split = split_unit(u_bsdf.x);
     const Mask<F> is_outside = wo_local.z >= F(0);
     const F side = select(is_outside, F(1), F(-1));

@@ -43,7 +43,7 @@ template <class F>
     const Vec3<F> wo_local = frame.local_from_world(vertex.wo);
     BsdfSample<F> sample{{F(0), F(0), F(1)}, black<F>(), F(0), F(1)};
     for_each_scatterer<F>(scene, vertex, vertex.is_there, [&](const auto& bsdf, const Mask<F>& lanes) {
-      sample = select(lanes, bsdf.sample_(wo_local, u_bsdf), sample);
+      sample = select(lanes, bsdf.sample(wo_local, u_bsdf), sample);
     });
     const Vec3<F> wi = frame.world_from_local(sample.wi_local);
     const Mask<F> is_dirac = sample.pdf_solid_angle == infinity;

@@ -50,10 +50,10 @@ template <class F>
       F weight = F(1);
       if (needs_both_pdfs(rules.direct_light))
         weight = mis_weight(rules.direct_light, select(lanes, sample.pdf_solid_angle(), F(1)) * n_light,
-                            bsdf.pdf_solid_angle_(wo_local, wi_local) * n_bsdf);
+                            bsdf.pdf_solid_angle(wo_local, wi_local) * n_bsdf);
       else if (rules.direct_light == DirectLight::half)
         weight = mis_weight(rules.direct_light, sample.pdf_solid_angle(), F(0));
-      scattered = select(lanes, bsdf.eval_(wo_local, wi_local) * sample.radiance_over_pdf * (cosine * weight),
+      scattered = select(lanes, bsdf.eval(wo_local, wi_local) * sample.radiance_over_pdf * (cosine * weight),
                          scattered);
     });
     if (rules.light_samples > 1) scattered = scattered * F(1 / float(rules.light_samples));

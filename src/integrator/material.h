@@ -20,7 +20,7 @@ void material(const Scene& scene, SampleBlock& block) {
     const Vec3<F> wo_local = Frame<F>(vertex.ns).local_from_world(vertex.wo), wi_local{F(0), F(0), F(1)};
     for_each_material<F>(scene.materials, vertex.material, vertex.uv, vertex.is_surface,
                          [&](const auto& bsdf, const Mask<F>& lanes) {
-                           add_radiance<F>(block, i, lanes, bsdf.eval_(wo_local, wi_local));
+                           add_radiance<F>(block, i, lanes, bsdf.eval(wo_local, wi_local));
                          });
   }
 }

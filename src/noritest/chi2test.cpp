@@ -125,7 +125,7 @@ Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, co
     Observed& part = parts.local();
     const std::int64_t end = std::min((task + 1) * samples_a_task, rules.sample_count);
     for (std::int64_t i = task * samples_a_task; i < end; ++i) {
-      const BsdfSample<float> sample = model.sample_(wo, u_bsdf[std::uint32_t(i)]);
+      const BsdfSample<float> sample = model.sample(wo, u_bsdf[std::uint32_t(i)]);
       if (sample.weight == Colorf{0, 0, 0}) continue;
       if (std::isinf(sample.pdf_solid_angle)) has_dirac = true;
       const float sum = sample.weight.r + sample.weight.g + sample.weight.b + sample.pdf_solid_angle;
@@ -167,7 +167,7 @@ std::vector<double> expect(const Model& model, const Vec3f& wo, const Chi2Rules&
       const double sin_theta = std::sqrt(std::max(1 - z * z, 0.0));
       const auto density = [&](double phi) {
         const Vec3f wi{float(sin_theta * std::cos(phi)), float(sin_theta * std::sin(phi)), float(z)};
-        return double(model.pdf_solid_angle_(wo, wi));
+        return double(model.pdf_solid_angle(wo, wi));
       };
       return Rule::integrate(density, column * width, (column + 1) * width, most_halvings, tolerance);
     };
@@ -236,7 +236,7 @@ void run_chi2test(TestRun& run) {
                         .detail = fmt::format("direction {}", direction + 1)};
       run.run_case(result, [&](CaseResult& measured) {
         std::vector<UnreadKey> unread_of_bsdf;
-        const Bsdf material = make_bsdf(bsdf, run.test.directory, unread_of_bsdf);
+        const Material material = make_material(bsdf, run.test.directory, unread_of_bsdf);
         if (direction == 0) run.warn(unread_of_bsdf);
         const Vec3f wo = random_viewer(rules, RandomSquares(SamplerKind::independent, hash64(seed))[0]);
         std::visit(

@@ -122,7 +122,7 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
                     .is_reference_estimated = true};
   run.run_case(result, [&](CaseResult& measured) {
     std::vector<UnreadKey> unread;
-    const Bsdf material = make_bsdf(bsdf, run.test.directory, unread);
+    const Material material = make_material(bsdf, run.test.directory, unread);
     run.warn(unread);
     const double angle = angle_deg * std::numbers::pi / 180;
     const Vec3f wo{float(std::sin(angle)), 0, float(std::cos(angle))};
@@ -133,7 +133,7 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
           const auto at_point = model.at(Vec2f{0, 0}, true);
           for (std::int64_t i = 0; i < rules.sample_count; ++i) {
             if (i % samples_between_checks == 0) throw_if_stopped(run.settings);
-            samples.add(at_point.sample_(wo, u_bsdf[std::uint32_t(i)]).weight);
+            samples.add(at_point.sample(wo, u_bsdf[std::uint32_t(i)]).weight);
           }
         },
         material);

@@ -44,7 +44,7 @@ class Loader {
     RayCaster rays(geometry_);
     const double seconds_build = seconds_since(start_of_build);
     const bool has_textures = std::any_of(materials_.begin(), materials_.end(),
-                                          [](const Bsdf& material) { return has_texture(material); });
+                                          [](const Material& material) { return has_texture(material); });
     return {
         Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_), std::move(rays),
               std::move(materials_), has_textures, std::move(lights_), medium_, sampler_},
@@ -129,7 +129,7 @@ class Loader {
       }
     }
     SurfaceIds ids{.material = std::int32_t(materials_.size())};
-    materials_.push_back(bsdf ? make_bsdf(*bsdf, description_.directory, unread_) : Bsdf{Diffuse{}});
+    materials_.push_back(bsdf ? make_material(*bsdf, description_.directory, unread_) : Material{Diffuse{}});
     std::optional<Colorf> radiance;
     if (light && light->type == area_light_name) {
       radiance = area_light_radiance(*light, unread_);
@@ -166,7 +166,7 @@ class Loader {
   SamplerKind sampler_ = SamplerKind::independent;
   int samples_per_pixel_ = 16;
   Geometry geometry_;
-  std::vector<Bsdf> materials_;
+  std::vector<Material> materials_;
   Lights lights_;
   std::optional<HomogeneousMedium> medium_;
   std::vector<UnreadKey> unread_;

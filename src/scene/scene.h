@@ -20,7 +20,7 @@ struct Scene {
   PixelFilter filter;
   Geometry geometry;
   RayCaster rays;  ///< Over `geometry`.
-  std::vector<Bsdf> materials;
+  std::vector<Material> materials;
   bool has_textures = false;  ///< Some material needs uv.
   Lights lights;
   std::optional<HomogeneousMedium> medium;

@@ -1,7 +1,7 @@
 // An image file that a scene names, as colours: for textures and environment maps.
 #pragma once
 
-#include "film/image_file.h"
+#include "image/image_file.h"
 #include "scenefile/parameters.h"
 
 #include <array>

@@ -1,5 +1,5 @@
 // What scripts and people rely on: options, files, exit codes.
-#include "film/image_file.h"
+#include "image/image_file.h"
 #include "support/program.h"
 
 #include <cmath>

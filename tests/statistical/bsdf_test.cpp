@@ -4,7 +4,7 @@
 // Seen to fail when: Phong samples its lobe with exponent n + 1 or evaluates its density with n; the lobe is
 // chosen with probability ks in place of specular_probability; the mirror direction is -wo; u_lobe is not
 // stretched back; square_to_cosine_hemisphere takes radius = u.x; the cone's one_minus_cos is squared;
-// Phong's eval_ takes n + 1 for n + 2; the cosine is left out of the weight; a GGX density has alpha for
+// Phong's eval takes n + 1 for n + 2; the cosine is left out of the weight; a GGX density has alpha for
 // alpha^2; a visible normal is not stretched back in x; Beckmann's slope across is 10 % short; the density of
 // refraction lacks eta^2 or the cosine of wi; a refracted weight lacks the factor for radiance; eta is
 // inverted; split_unit gives the same bits twice; a conductor's weight lacks the shadowing of wi; the blend's
@@ -150,7 +150,7 @@ Phong phong(float kd, float ks, float exponent) {
 
 struct Model {
   std::string name;
-  Bsdf bsdf;
+  Material bsdf;
   bool is_two_sided = false;
   double eta = 1;           ///< inside over outside
   double tolerance = 1e-4;  ///< Relative, of f and densities: rounding of wi moves it in a narrow lobe.
@@ -198,17 +198,17 @@ std::vector<Model> models() {
 
 /// f(model at a point).
 template <class Function>
-auto visit_at(const Bsdf& bsdf, Function&& f) {
+auto visit_at(const Material& bsdf, Function&& f) {
   return std::visit([&](const auto& material) { return f(material.at(Vec2f{0, 0}, true)); }, bsdf);
 }
-BsdfSample<float> sample(const Bsdf& bsdf, const Vec3f& wo, const Vec2f& u) {
-  return visit_at(bsdf, [&](const auto& model) { return model.sample_(wo, u); });
+BsdfSample<float> sample(const Material& bsdf, const Vec3f& wo, const Vec2f& u) {
+  return visit_at(bsdf, [&](const auto& model) { return model.sample(wo, u); });
 }
-float pdf(const Bsdf& bsdf, const Vec3f& wo, const Vec3f& wi) {
-  return visit_at(bsdf, [&](const auto& model) { return model.pdf_solid_angle_(wo, wi); });
+float pdf(const Material& bsdf, const Vec3f& wo, const Vec3f& wi) {
+  return visit_at(bsdf, [&](const auto& model) { return model.pdf_solid_angle(wo, wi); });
 }
-Colorf eval(const Bsdf& bsdf, const Vec3f& wo, const Vec3f& wi) {
-  return visit_at(bsdf, [&](const auto& model) { return model.eval_(wo, wi); });
+Colorf eval(const Material& bsdf, const Vec3f& wo, const Vec3f& wi) {
+  return visit_at(bsdf, [&](const auto& model) { return model.eval(wo, wi); });
 }
 
 /// Straight up, oblique, grazing; for a two-sided model, the same from below.
@@ -289,7 +289,7 @@ TEST(Bsdf, IsReciprocalNotNegativeAndOneSidedOnesAreDarkFromBehind) {
 }
 
 /// The mean of the weights; the standard error is at most 1.5 / sqrt(samples).
-double reflectance(const Bsdf& bsdf, const Vec3f& wo) {
+double reflectance(const Material& bsdf, const Vec3f& wo) {
   Random random(9);
   double sum = 0;
   for (int i = 0; i < samples; ++i) sum += sample(bsdf, wo, random.square()).weight.r;
@@ -316,7 +316,7 @@ TEST(Bsdf, ReflectsNoMoreThanKdPlusKsAndAllOfItFromAbove) {
 TEST(Bsdf, RoughSurfacesLoseOnlyWhatIsShadowed) {
   for (const Kind kind : {Kind::beckmann, Kind::ggx})
     for (const float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
-      const Bsdf white = RoughConductor{{kind, alpha}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};  // F = 1
+      const Material white = RoughConductor{{kind, alpha}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};  // F = 1
       const Model glass = roughdielectric(kind, alpha, 1.5f);
       for (const Vec3f& wo : directions(glass)) {
         const std::string what = fmt::format("{} {}, cos theta_o {}", name_of(kind), alpha, wo.z);
@@ -345,7 +345,7 @@ TEST(Bsdf, DiracLobesHaveInfiniteDensityAndConserveEnergy) {
   for (const float eta : {1.5f, 0.7f, 1.0f})
     for (const float z : {1.0f, 0.7f, 0.1f, 1e-6f, 0.0f, -0.9f, -0.2f}) {
       const Vec3f wo = normalize(Vec3f{0.8f * std::sqrt(1 - z * z), -0.6f * std::sqrt(1 - z * z), z});
-      const Bsdf glass = Dielectric{{eta, 1 / eta}};
+      const Material glass = Dielectric{{eta, 1 / eta}};
       double energy = 0;
       for (int i = 0; i < 2000; ++i) {
         const auto drawn = sample(glass, wo, random.square());

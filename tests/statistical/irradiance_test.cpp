@@ -4,7 +4,7 @@
 // Seen to fail when: rays start off the surface by a fraction of its coordinates alone, so that a surface at
 // the origin shadows itself; a mesh light's pdf_area is 1 % too large; a sphere's cone is 1 % too wide; the
 // cosine at the receiver is left out; choice.pmf is left out; the BSDF samples of mis have weight 1; the
-// density of mis lacks the probability of the light; Diffuse::eval_ gives albedo; shadow rays end 5 % early;
+// density of mis lacks the probability of the light; Diffuse::eval gives albedo; shadow rays end 5 % early;
 // lights shine from behind; shadow rays end inside of a huge sphere.
 #include "closed_forms.h"
 #include "film_statistics.h"

@@ -12,9 +12,9 @@
 // off; the choice's pmf is missing; a segment ends within the scene.
 #include "light/light.h"
 
-#include "film/image_file.h"
 #include "geometry/bounds.h"
 #include "geometry/shapes.h"
+#include "image/image_file.h"
 #include "integrator/light_sampling.h"
 #include "sphere_cells.h"
 #include "stats/chi_squared.h"

@@ -10,8 +10,8 @@
 // several light or BSDF samples are not divided by their number, or their weights do not count them, on
 // either side; every_light divides by the number of lights; the medium is cut off at the sphere around the
 // shapes; whitted goes on from every surface.
-#include "film/image_file.h"
 #include "film_statistics.h"
+#include "image/image_file.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
 #include "test_scene.h"

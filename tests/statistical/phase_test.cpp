@@ -48,7 +48,7 @@ TEST_P(HenyeyGreensteinPhase, SamplesFollowTheDensityAndTurnByG) {
         });
     std::vector<double> expected = cells.integrals(
         [&](const Vec3<double>& wi) {
-          return double(phase.pdf_solid_angle_(wo, Vec3f{float(wi.x), float(wi.y), float(wi.z)}));
+          return double(phase.pdf_solid_angle(wo, Vec3f{float(wi.x), float(wi.y), float(wi.z)}));
         },
         8);
     double total = 0;
@@ -64,11 +64,11 @@ TEST_P(HenyeyGreensteinPhase, SamplesFollowTheDensityAndTurnByG) {
     RunningStatistics cosine;
     for (int i = 0; i < samples; ++i) {
       const float x = unit();
-      const BsdfSample<float> sample = phase.sample_(wo, Vec2f{x, unit()});
+      const BsdfSample<float> sample = phase.sample(wo, Vec2f{x, unit()});
       const Vec3<double> wi{sample.wi_local.x, sample.wi_local.y, sample.wi_local.z};
       ASSERT_NEAR(length(wi), 1, 1e-5);
-      ASSERT_EQ(sample.pdf_solid_angle, phase.pdf_solid_angle_(wo, sample.wi_local));
-      ASSERT_EQ(phase.eval_(wo, sample.wi_local).g, sample.pdf_solid_angle);
+      ASSERT_EQ(sample.pdf_solid_angle, phase.pdf_solid_angle(wo, sample.wi_local));
+      ASSERT_EQ(phase.eval(wo, sample.wi_local).g, sample.pdf_solid_angle);
       ASSERT_EQ(sample.weight.g, 1);
       ++observed[cells.cell_of(wi)];
       cosine.add(-side * wi.z);

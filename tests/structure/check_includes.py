@@ -18,7 +18,7 @@ import sys
 import tempfile
 
 # scenefile comes early because the plugins of every family state their parameters through it.
-FOLDERS = ["base", "stats", "scenefile", "sampler", "film", "geometry", "texture", "bsdf", "medium", "light",
+FOLDERS = ["base", "stats", "scenefile", "sampler", "image", "film", "geometry", "texture", "bsdf", "medium", "light",
            "lightsampler", "scene", "integrator", "render", "noritest"]
 TOPS = ["src", "apps", "tests", "bench"]
 MAX_HEADER_LINES = 150

@@ -146,10 +146,10 @@ TEST(Microfacet, IsTheFormulaOfNori) {
         const double lobe = 0.6 * density * 0.5 * (s * s + p * p) * shadowing(wo.z) * shadowing(wi.z) /
                             (4 * wo.z * wi.z * h.z);
         const auto single = [](const Vec3<double>& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
-        const Colorf f = model.eval_(single(wo), single(wi));
+        const Colorf f = model.eval(single(wo), single(wi));
         EXPECT_NEAR(f.r, 0.2 / pi_d + lobe, 1e-4 * (1 + lobe));
         EXPECT_NEAR(f.b, 0.4 / pi_d + lobe, 1e-4 * (1 + lobe));
-        EXPECT_NEAR(model.pdf_solid_angle_(single(wo), single(wi)),
+        EXPECT_NEAR(model.pdf_solid_angle(single(wo), single(wi)),
                     0.6 * density / (4 * dot(wo, h)) + 0.4 * wi.z / pi_d, 1e-4 * (1 + density));
       }
 }

@@ -1,5 +1,5 @@
 #include "base/error.h"
-#include "film/image_file.h"
+#include "image/image_file.h"
 #include "support/data_folder.h"
 #include "support/error_of.h"
 #include "support/temporary_folder.h"

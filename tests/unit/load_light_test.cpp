@@ -1,8 +1,8 @@
 // Lights as files state them: what is refused, with which message, and what follows from the words.
 #include "scene/load_light.h"
 
-#include "film/image_file.h"
 #include "geometry/bounds.h"
+#include "image/image_file.h"
 #include "support/data_folder.h"
 #include "support/error_of.h"
 #include "test_scene.h"

@@ -6,7 +6,7 @@
 #include "texture/texture.h"
 
 #include "bsdf/bsdf.h"
-#include "film/image_file.h"
+#include "image/image_file.h"
 #include "support/error_of.h"
 #include "test_scene.h"
 
@@ -65,7 +65,7 @@ ColorTexture load(const std::string& inside, const std::function<void(const std:
       << "</texture></bsdf></scene>";
   const SceneDesc scene = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
   std::vector<UnreadKey> unread;
-  return std::get<Diffuse>(make_bsdf(scene.root.children.front(), scene.directory, unread)).albedo;
+  return std::get<Diffuse>(make_material(scene.root.children.front(), scene.directory, unread)).albedo;
 }
 std::string file_xml(const std::string& name) {
   return fmt::format("<string name=\"filename\" value=\"{}\"/>", name);

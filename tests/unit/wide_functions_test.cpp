@@ -5,7 +5,7 @@
 // swaps its arguments for integers; sincos_turns is off by 1e-6.
 #include "wide/wide_functions.h"
 
-#include "film/image_file.h"
+#include "image/image_file.h"
 #include "render/isa.h"
 #include "test_scene.h"
 
@@ -107,23 +107,23 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   all["Camera::ray"] = {{real(0, 64, {0, 64})}, 4, 1};
   all["Camera::ray, lens"] = {{real(0, 64, {0, 64}), real(0, 64), real(-1, 1, {0, 1})}, 4, 1};
   all["interpolate_normal"] = {{word_below(1), word_below(8), real(0, 0.5f, {0})}, 4, 1};
-  all["Diffuse::eval_"] = all["Diffuse::pdf_solid_angle_"] = {{real(-1, 1)}, 1, 1e-30, 2};
-  all["Diffuse::sample_"] = {{unit()}, 5, 1, 1};
+  all["Diffuse::eval"] = all["Diffuse::pdf_solid_angle"] = {{real(-1, 1)}, 1, 1e-30, 2};
+  all["Diffuse::sample"] = {{unit()}, 5, 1, 1};
   // n = 30: an ulp of cos alpha is 30 of the lobe; times its height, (n + 2) / (2 pi).
-  all["Phong::eval_"] = all["Phong::pdf_solid_angle_"] = {{real(-1, 1)}, 20, 5, 2};
+  all["Phong::eval"] = all["Phong::pdf_solid_angle"] = {{real(-1, 1)}, 20, 5, 2};
   // As square_to_power_cosine, for n = 30, then turned.
-  all["Phong::sample_"] = {{unit()}, 40, 1, 1};
+  all["Phong::sample"] = {{unit()}, 40, 1, 1};
   // Lobes of roughness 0.3, some 3 high. A sample has the square root of what is left of 1 - cos^2, as
   // square_to_power_cosine.
   for (const std::string name : {"Microfacet", "RoughConductor ggx", "RoughConductor beckmann",
                                  "RoughDielectric ggx", "RoughDielectric beckmann"}) {
-    all[name + "::eval_"] = all[name + "::pdf_solid_angle_"] = {{real(-1, 1)}, 40, 5, 2};
+    all[name + "::eval"] = all[name + "::pdf_solid_angle"] = {{real(-1, 1)}, 40, 5, 2};
     // Slopes of Beckmann's have no end: towards 1 the rounding of the random number itself decides.
     const bool is_endless = name.ends_with("beckmann");
-    all[name + "::sample_"] = {
+    all[name + "::sample"] = {
         {is_endless ? real(0, 1, {0, 0.25f, 0.5f, 0.75f, 0.999f}) : unit()}, 4000, 1, 1};
   }
-  all["Dielectric::sample_"] = {{unit()}, 10, 1, 1};
+  all["Dielectric::sample"] = {{unit()}, 10, 1, 1};
   // Not at the edges of squares, where rounding decides.
   all["textures"] = {{real(-3, 3)}, 200, 1};
   all["inverse_erf"] = {{real(-1, 1, {0, 0x1.fffffep-1f})}, 8};

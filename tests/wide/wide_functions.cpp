@@ -161,23 +161,23 @@ void visit_bsdf(const Scene& scene, Function&& f) {
 template <int material>
 void bsdf_eval(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec(), wi = p.vec();
-  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.eval_(wo, wi)); });
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.eval(wo, wi)); });
 }
 template <int material>
 void bsdf_pdf(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec(), wi = p.vec();
-  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.pdf_solid_angle_(wo, wi)); });
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.pdf_solid_angle(wo, wi)); });
 }
 template <int material>
 void bsdf_sample(const Scene& scene, Packet& p) {
   const Vec3<F> wo = p.vec();
   const Vec2<F> u_bsdf = p.square();
-  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.sample_(wo, u_bsdf).wi_local); });
+  visit_bsdf<material>(scene, [&](const auto& bsdf) { p.give(bsdf.sample(wo, u_bsdf).wi_local); });
 }
 
 void textures(const Scene& scene, Packet& p) {
   const Vec2<F> uv = p.square();
-  for (const Bsdf& material : scene.materials)
+  for (const Material& material : scene.materials)
     if (has_texture(material)) p.give(std::get<Diffuse>(material).at(uv, every_lane()).albedo);
 }
 void inverse_error_function(const Scene&, Packet& p) { p.give(inverse_erf(p.real())); }
@@ -252,28 +252,28 @@ constexpr WideFunction functions[]{
     {"Camera::ray", 2, 8, Words::floats, run<camera_ray>},
     {"Camera::ray, lens", 4, 8, Words::floats, run<lens_ray>},
     {"interpolate_normal", 4, 3, Words::floats, run<smooth_normal>},
-    {"Diffuse::eval_", 6, 3, Words::floats, run<bsdf_eval<0>>},
-    {"Diffuse::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<0>>},
-    {"Diffuse::sample_", 5, 3, Words::floats, run<bsdf_sample<0>>},
-    {"Phong::eval_", 6, 3, Words::floats, run<bsdf_eval<1>>},
-    {"Phong::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<1>>},
-    {"Phong::sample_", 5, 3, Words::floats, run<bsdf_sample<1>>},
-    {"Microfacet::eval_", 6, 3, Words::floats, run<bsdf_eval<3>>},
-    {"Microfacet::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<3>>},
-    {"Microfacet::sample_", 5, 3, Words::floats, run<bsdf_sample<3>>},
-    {"RoughConductor ggx::eval_", 6, 3, Words::floats, run<bsdf_eval<4>>},
-    {"RoughConductor ggx::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<4>>},
-    {"RoughConductor ggx::sample_", 5, 3, Words::floats, run<bsdf_sample<4>>},
-    {"RoughConductor beckmann::eval_", 6, 3, Words::floats, run<bsdf_eval<5>>},
-    {"RoughConductor beckmann::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<5>>},
-    {"RoughConductor beckmann::sample_", 5, 3, Words::floats, run<bsdf_sample<5>>},
-    {"RoughDielectric ggx::eval_", 6, 3, Words::floats, run<bsdf_eval<6>>},
-    {"RoughDielectric ggx::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<6>>},
-    {"RoughDielectric ggx::sample_", 5, 3, Words::floats, run<bsdf_sample<6>>},
-    {"RoughDielectric beckmann::eval_", 6, 3, Words::floats, run<bsdf_eval<7>>},
-    {"RoughDielectric beckmann::pdf_solid_angle_", 6, 1, Words::floats, run<bsdf_pdf<7>>},
-    {"RoughDielectric beckmann::sample_", 5, 3, Words::floats, run<bsdf_sample<7>>},
-    {"Dielectric::sample_", 5, 3, Words::floats, run<bsdf_sample<8>>},
+    {"Diffuse::eval", 6, 3, Words::floats, run<bsdf_eval<0>>},
+    {"Diffuse::pdf_solid_angle", 6, 1, Words::floats, run<bsdf_pdf<0>>},
+    {"Diffuse::sample", 5, 3, Words::floats, run<bsdf_sample<0>>},
+    {"Phong::eval", 6, 3, Words::floats, run<bsdf_eval<1>>},
+    {"Phong::pdf_solid_angle", 6, 1, Words::floats, run<bsdf_pdf<1>>},
+    {"Phong::sample", 5, 3, Words::floats, run<bsdf_sample<1>>},
+    {"Microfacet::eval", 6, 3, Words::floats, run<bsdf_eval<3>>},
+    {"Microfacet::pdf_solid_angle", 6, 1, Words::floats, run<bsdf_pdf<3>>},
+    {"Microfacet::sample", 5, 3, Words::floats, run<bsdf_sample<3>>},
+    {"RoughConductor ggx::eval", 6, 3, Words::floats, run<bsdf_eval<4>>},
+    {"RoughConductor ggx::pdf_solid_angle", 6, 1, Words::floats, run<bsdf_pdf<4>>},
+    {"RoughConductor ggx::sample", 5, 3, Words::floats, run<bsdf_sample<4>>},
+    {"RoughConductor beckmann::eval", 6, 3, Words::floats, run<bsdf_eval<5>>},
+    {"RoughConductor beckmann::pdf_solid_angle", 6, 1, Words::floats, run<bsdf_pdf<5>>},
+    {"RoughConductor beckmann::sample", 5, 3, Words::floats, run<bsdf_sample<5>>},
+    {"RoughDielectric ggx::eval", 6, 3, Words::floats, run<bsdf_eval<6>>},
+    {"RoughDielectric ggx::pdf_solid_angle", 6, 1, Words::floats, run<bsdf_pdf<6>>},
+    {"RoughDielectric ggx::sample", 5, 3, Words::floats, run<bsdf_sample<6>>},
+    {"RoughDielectric beckmann::eval", 6, 3, Words::floats, run<bsdf_eval<7>>},
+    {"RoughDielectric beckmann::pdf_solid_angle", 6, 1, Words::floats, run<bsdf_pdf<7>>},
+    {"RoughDielectric beckmann::sample", 5, 3, Words::floats, run<bsdf_sample<7>>},
+    {"Dielectric::sample", 5, 3, Words::floats, run<bsdf_sample<8>>},
     {"textures", 2, 9, Words::floats, run<textures>},
     {"inverse_erf", 1, 1, Words::floats, run<inverse_error_function>},
     {"split_unit", 1, 2, Words::integers, run<split>},

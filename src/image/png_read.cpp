@@ -1,5 +1,5 @@
 #include "base/error.h"
-#include "film/image_file.h"
+#include "image/image_file.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "base/error.h"
-#include "film/image_file.h"
-#include "film/temporary_file.h"
+#include "base/temporary_file.h"
+#include "image/image_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "base/error.h"
-#include "film/exr_names.h"
-#include "film/image_file.h"
-#include "film/temporary_file.h"
+#include "base/temporary_file.h"
+#include "image/exr_names.h"
+#include "image/image_file.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

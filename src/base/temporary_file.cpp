@@ -1,4 +1,4 @@
-#include "film/temporary_file.h"
+#include "base/temporary_file.h"
 
 #include "base/error.h"
 

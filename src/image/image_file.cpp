@@ -1,7 +1,7 @@
-#include "film/image_file.h"
+#include "image/image_file.h"
 
 #include "base/error.h"
-#include "film/temporary_file.h"
+#include "base/temporary_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>
