@@ -49,7 +49,7 @@ Phong glossy(float exponent) {
 Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
   Geometry geometry;
   Lights lights;
-  const std::vector<Material> materials{Diffuse{}, glossy(50)};
+  const Materials materials({Diffuse{}, glossy(50)});
   geometry.add_mesh(tessellate(grid, has_normals,
                                [](double u, double v) {
                                  const double x = 10 * v - 5, z = 10 * u - 5;
@@ -79,8 +79,7 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
                                                          }),
                                               {0, light});
     const float radiance = 10.0f + float(light);
-    lights.add({radiance, radiance, radiance}, "light " + std::to_string(light), LightKind::mesh,
-               lights.meshes.add(geometry, id));
+    lights.add<MeshLights>({radiance, radiance, radiance}, "light " + std::to_string(light), geometry, id);
   }
 
   Camera camera;

@@ -45,24 +45,27 @@ struct Recording {
   Vec3s origin, direction, shadow_origin, shadow_direction;
   std::vector<float> t_near, t_far;
   std::vector<std::int32_t> is_active, shadow_order;
-  std::int64_t rays = 0, shadow_rays = 0;
+  std::int64_t rays = 0;
 
-  void append(const SampleBlock& block) {
+  /// Those of one light sample.
+  void append_shadow_rays(const SampleBlock& block) {
     const PathColumns& path = block.path;
     const int count = path.padded_count;
     for (int i = 0; i < count; ++i)
-      shadow_order.push_back(block.shadow_count > 0 && block.shadow_is_needed[i] && i < path.count
-                                 ? std::int32_t(shadow_origin.x.size()) + i
-                                 : -1);
+      shadow_order.push_back(
+          block.shadow_is_needed[i] && i < path.count ? std::int32_t(shadow_origin.x.size()) + i : -1);
+    shadow_origin.append(block.shadow_origin, count);
+    shadow_direction.append(block.shadow_direction, count);
+  }
+  void append_rays(const SampleBlock& block) {
+    const PathColumns& path = block.path;
+    const int count = path.padded_count;
     rays += path.count;
-    shadow_rays += block.shadow_count;
     origin.append(path.ray.origin, count);
     direction.append(path.ray.direction, count);
     t_near.insert(t_near.end(), path.ray.t_near.begin(), path.ray.t_near.begin() + count);
     t_far.insert(t_far.end(), path.ray.t_far.begin(), path.ray.t_far.begin() + count);
     is_active.insert(is_active.end(), path.ray.is_active.begin(), path.ray.is_active.begin() + count);
-    shadow_origin.append(block.shadow_origin, count);
-    shadow_direction.append(block.shadow_direction, count);
   }
   void clear() {
     for (Vec3s* vectors : {&origin, &direction, &shadow_origin, &shadow_direction}) vectors->clear();
@@ -88,11 +91,11 @@ struct Recording {
 
   /// Casts the shadow rays; seconds.
   double cast_bare_shadows(const RayCaster& caster, int lanes) {
-    is_free_.resize(t_near.size());
+    is_free_.resize(shadow_order.size());
     const double start = thread_seconds();
     caster.unoccluded({shadow_origin.x.data(), shadow_origin.y.data(), shadow_origin.z.data(),
                        shadow_direction.x.data(), shadow_direction.y.data(), shadow_direction.z.data(),
-                       shadow_order.data(), int(t_near.size()), shadow_segment_end},
+                       shadow_order.data(), int(shadow_order.size()), shadow_segment_end},
                       is_free_.data(), lanes, Coherence::incoherent);
     return thread_seconds() - start;
   }
@@ -121,17 +124,21 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   settings.isa = isa;
   settings.threads = 1;
   const Kernel& kernel = kernel_for(isa);
+  const LightSampler light_sampler = light_sampler_for(integrator, scene.lights);
   Film film(scene.camera.width_px, scene.camera.height_px);
   std::vector<InvalidSample> invalid;
   const auto block = std::make_unique<SampleBlock>();
   const auto recording_block = std::make_unique<SampleBlock>();
   Recording camera, bounces;
-  const std::function<void(const SampleBlock&, int, int)> record = [&](const SampleBlock& b, int vertex,
-                                                                       int bsdf_sample) {
-    if (vertex == 0 && bsdf_sample > 0) return;  // The same camera rays again.
-    (vertex == 0 ? camera : bounces).append(b);
-  };
-  recording_block->on_vertex = &record;
+  const BlockWatcher record{
+      .on_light_sample = [&](const SampleBlock& b, int vertex, int,
+                             std::int32_t) { (vertex == 0 ? camera : bounces).append_shadow_rays(b); },
+      .on_vertex =
+          [&](const SampleBlock& b, int vertex, int branch) {
+            if (vertex == 0 && branch > 0) return;  // The same camera rays again.
+            (vertex == 0 ? camera : bounces).append_rays(b);
+          }};
+  recording_block->watcher = &record;
 
   // Whole tiles only: what is left at the right and below counts for nothing here.
   const int columns = scene.camera.width_px / tile_px, tiles = columns * (scene.camera.height_px / tile_px);
@@ -141,6 +148,7 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   for (int k = 0; k < wanted; ++k) {
     const int tile = int((std::int64_t(k) * tiles + tiles / 2) / wanted) % tiles;
     TileJob job{.scene = &scene,
+                .light_sampler = &light_sampler,
                 .settings = &settings,
                 .x_begin = tile % columns * tile_px,
                 .y_begin = tile / columns * tile_px,

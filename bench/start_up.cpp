@@ -85,12 +85,12 @@ int main(int argc, char** argv) {
   camera.per_px_x = {1.0f / 16, 0, 0};
   camera.per_px_y = {0, 0, 1.0f / 16};
   Lights lights;
-  lights.add({1, 1, 1}, "sheet", LightKind::mesh, lights.meshes.add(geometry, 0));
+  lights.add<MeshLights>({1, 1, 1}, "sheet", geometry, 0);
   const Scene scene{.camera = camera,
                     .filter = PixelFilter::box(),
                     .geometry = std::move(geometry),
                     .rays = std::move(rays),
-                    .materials = {Diffuse{}},
+                    .materials = Materials({Diffuse{}}),
                     .lights = std::move(lights),
                     .medium = std::nullopt,
                     .sampler = SamplerKind::sobol};

@@ -109,11 +109,15 @@ inline std::string box_obj(const Vec3d& center, double half, bool is_inward) {
 
 /// The widest instruction set of this machine, all threads.
 inline RenderSettings render_settings(std::string_view integrator, int samples_per_pixel, int replicates,
-                                      std::uint64_t seed, DirectLight heuristic = DirectLight::balance) {
+                                      std::uint64_t seed, Heuristic heuristic = Heuristic::balance) {
   RenderSettings settings;
   settings.integrator = integrator_from_name(integrator);
-  if (needs_both_pdfs(settings.integrator.rules.direct_light))
-    settings.integrator.rules.direct_light = heuristic;
+  if (const PathRules* rules = settings.integrator.path_rules(); rules && rules->needs_both_pdfs()) {
+    auto by_both = std::get<ByBoth>(rules->direct_light());
+    by_both.heuristic = heuristic;
+    settings.integrator.rules =
+        rules->length() == PathLength::one_vertex ? PathRules::direct(by_both) : PathRules::paths(by_both);
+  }
   settings.samples_per_pixel = samples_per_pixel;
   settings.replicates = replicates;
   settings.seed = seed;

@@ -29,7 +29,7 @@ namespace {
 struct Options {
   std::string scene_file;
   std::vector<std::string> outputs;
-  std::string integrator, sampler, stats_file, replay;
+  std::string integrator, sampler, light_sampler, stats_file, replay;
   std::optional<int> samples_per_pixel, replicates;
   RunOptions run;
   bool is_quiet = false, is_strict = false, is_in_sample_order = false;
@@ -73,7 +73,7 @@ IntegratorSettings integrator_for(const Options& options, const LoadedScene& loa
     return name.empty() ? IntegratorSettings{} : integrator_from_name(name);
   std::vector<UnreadKey> unread_in_file;
   const IntegratorSettings in_file = make_integrator(loaded.integrator, dialect, unread_in_file);
-  const bool is_named_so = name == loaded.integrator.type && in_file.kind != IntegratorKind::path;
+  const bool is_named_so = name == loaded.integrator.type && !in_file.needs_lights();
   if (!name.empty() && !is_named_so) {
     const IntegratorSettings asked = integrator_from_name(name);
     if (asked.name != in_file.name) return asked;
@@ -129,8 +129,9 @@ nlohmann::ordered_json stats(const Options& options, const RenderSettings& setti
   json["dialect"] = dialect_name(description.dialect);
   json["dialect_reason"] = description.dialect_reason;
   json["integrator"] = settings.integrator.name;
-  if (needs_both_pdfs(settings.integrator.rules.direct_light))
-    json["heuristic"] = heuristic_name(settings.integrator.rules.direct_light);
+  if (const std::string_view heuristic = heuristic_name(settings.integrator); !heuristic.empty())
+    json["heuristic"] = heuristic;
+  json["light_sampler"] = settings.integrator.light_sampler();
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = settings.samples_per_pixel;
   json["replicates"] = settings.replicates;
@@ -184,6 +185,7 @@ std::string replay_command(const Options& options, const InvalidSample& sample) 
   };
   if (!options.integrator.empty()) add("--integrator", options.integrator);
   if (!options.sampler.empty()) add("--sampler", options.sampler);
+  if (!options.light_sampler.empty()) add("--light-sampler", options.light_sampler);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
   if (options.replicates) add("--replicates", *options.replicates);
   if (options.run.seed != 0) add("--seed", options.run.seed);
@@ -219,6 +221,8 @@ int run(const Options& options) {
   RenderSettings settings = settings_for(options, loaded);
   std::vector<UnreadKey> unread;
   settings.integrator = integrator_for(options, loaded, description.dialect, unread);
+  if (!options.light_sampler.empty())
+    settings.integrator = with_light_sampler(settings.integrator, options.light_sampler);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   if (const std::string unseen = unseen_lights(settings.integrator, loaded.scene.lights.dirac_count());
       !unseen.empty())
@@ -263,8 +267,10 @@ int run(const Options& options) {
                      rendered = count_rendered(result.film);
   if (result.is_interrupted)
     image.metadata.emplace_back("pixelsNotRendered", std::to_string(pixels - rendered));
-  if (needs_both_pdfs(settings.integrator.rules.direct_light))
-    image.metadata.emplace_back("heuristic", heuristic_name(settings.integrator.rules.direct_light));
+  if (const std::string_view heuristic = heuristic_name(settings.integrator); !heuristic.empty())
+    image.metadata.emplace_back("heuristic", heuristic);
+  if (const std::string_view light_sampler = settings.integrator.light_sampler(); !light_sampler.empty())
+    image.metadata.emplace_back("lightSampler", light_sampler);
   for (const std::filesystem::path output : options.outputs)
     image_format(output) == ImageFormat::png ? write_png(output, image) : write_exr(output, image);
   if (!options.stats_file.empty())
@@ -294,6 +300,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--integrator", options->integrator, "Instead of the file's; see etendue info");
   command->add_option("--sampler", options->sampler, "Instead of the file's: independent or sobol");
+  command->add_option("--light-sampler", options->light_sampler,
+                      "How lights are chosen, instead of the integrator's way: uniform, power or all");
   command->add_option("--spp", options->samples_per_pixel, "Samples a pixel in all, instead of the file's")
       ->check(whole_number(std::numeric_limits<int>::max()));
   command

@@ -18,9 +18,12 @@ std::string light_text(const Scene& scene, std::int32_t light) {
 }
 
 std::string light_sample_text(const Scene& scene, const SampleTrace::LightSample& sample) {
-  const std::string_view shadow_ray = !sample.is_shadow_ray_cast ? "not cast: nothing to add"
-                                      : sample.is_visible        ? "free"
-                                                                 : "blocked";
+  std::string shadow_ray = !sample.is_shadow_ray_cast ? "not cast: nothing to add"
+                           : sample.is_visible        ? "free"
+                                                      : "blocked";
+  if (sample.hidden_by)
+    shadow_ray +=
+        fmt::format(" by shape {}, triangle {}", sample.hidden_by->geometry, sample.hidden_by->primitive);
   return fmt::format(
       "  light sample      {}\n"
       "    end             {} m\n"

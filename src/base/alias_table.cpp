@@ -11,7 +11,7 @@ namespace {
 /// The weights over their mean. Scaled by the largest first, so that their sum cannot overflow.
 std::vector<double> relative_to_mean(std::span<const double> weights) {
   if (weights.empty()) throw std::invalid_argument("alias table: no weights");
-  if (weights.size() > std::numeric_limits<std::uint32_t>::max())
+  if (weights.size() > std::numeric_limits<std::int32_t>::max())
     throw std::invalid_argument("alias table: too many weights");
   double largest = 0;
   for (const double w : weights) {
@@ -38,7 +38,7 @@ std::uint64_t divide_up(std::uint64_t a, std::uint64_t b) { return (a + b - 1) /
 
 /// Counts, for each entry, the values of u that choose it.
 std::vector<float> count_choices(const std::vector<std::uint32_t>& threshold,
-                                 const std::vector<std::uint32_t>& alias) {
+                                 const std::vector<std::int32_t>& alias) {
   const std::uint64_t n = threshold.size();
   std::vector<std::uint64_t> choices(n);
   for (std::uint64_t i = 0; i < n; ++i) {
@@ -46,7 +46,7 @@ std::vector<float> count_choices(const std::vector<std::uint32_t>& threshold,
     const auto split = divide_up((i << 32) + threshold[i], n);
     const auto last = divide_up((i + 1) << 32, n);
     choices[i] += split - first;
-    choices[alias[i]] += last - split;
+    choices[std::size_t(alias[i])] += last - split;
   }
   std::vector<float> pmf;
   pmf.reserve(n);
@@ -55,17 +55,6 @@ std::vector<float> count_choices(const std::vector<std::uint32_t>& threshold,
 }
 
 }  // namespace
-
-AliasTable::Sample AliasTable::sample(std::uint32_t u) const {
-  const auto product = std::uint64_t{u} * size();
-  const auto cell = static_cast<std::uint32_t>(product >> 32);
-  const auto fraction = product & 0xFFFFFFFFu;
-  const std::uint64_t split = threshold[cell];
-  const bool is_own = fraction < split;
-  const auto offset = is_own ? fraction : fraction - split;
-  const auto width = is_own ? split : (std::uint64_t{1} << 32) - split;
-  return {is_own ? cell : alias[cell], static_cast<float>((offset << 24) / width) * 0x1p-24f};
-}
 
 AliasTable make_alias_table(std::span<const double> weights) {
   auto remaining = relative_to_mean(weights);
@@ -82,7 +71,7 @@ AliasTable make_alias_table(std::span<const double> weights) {
     const auto heavy = large.back();
     small.pop_back();
     table.threshold[light] = fixed_point(remaining[light]);
-    table.alias[light] = heavy;
+    table.alias[light] = static_cast<std::int32_t>(heavy);
     remaining[heavy] = (remaining[heavy] + remaining[light]) - 1;
     if (remaining[heavy] < 1) {
       large.pop_back();
@@ -91,13 +80,13 @@ AliasTable make_alias_table(std::span<const double> weights) {
   }
   for (const auto i : large) {
     table.threshold[i] = fixed_point(1);
-    table.alias[i] = i;
+    table.alias[i] = static_cast<std::int32_t>(i);
   }
   // Rounding can use up the large ones too early. What is left is nearly full, or of weight zero: never
   // itself.
   for (const auto i : small) {
     table.threshold[i] = fixed_point(remaining[i]);
-    table.alias[i] = heaviest;
+    table.alias[i] = static_cast<std::int32_t>(heaviest);
   }
   table.pmf = count_choices(table.threshold, table.alias);
   return table;

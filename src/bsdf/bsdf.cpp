@@ -1,5 +1,7 @@
 #include "bsdf/bsdf.h"
 
+#include <utility>
+
 namespace etendue {
 
 const std::vector<Plugin>& bsdf_plugins() {
@@ -19,6 +21,13 @@ Material make_material(const Object& description, const std::filesystem::path& d
   if (description.type == roughconductor_plugin.name) return make_roughconductor(description, unread);
   if (description.type == roughdielectric_plugin.name) return make_roughdielectric(description, unread);
   throw unknown_plugin(description, bsdf_plugins());
+}
+
+Materials::Materials(std::vector<Material> materials) : all_(std::move(materials)) {
+  for (const Material& material : all_) {
+    lit_sides_.push_back(std::visit([](const auto& model) { return model.lit_sides; }, material));
+    have_textures_ = have_textures_ || has_texture(material);
+  }
 }
 
 bool has_texture(const Material& material) {

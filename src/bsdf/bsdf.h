@@ -5,6 +5,7 @@
 // the lists of models in tests/statistical/bsdf_test.cpp.
 #pragma once
 
+#include "base/lookup_table.h"
 #include "bsdf/bsdf_sample.h"
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
@@ -16,6 +17,7 @@
 #include "scenefile/parameters.h"
 
 #include <concepts>
+#include <cstdint>
 #include <filesystem>
 #include <variant>
 #include <vector>
@@ -38,11 +40,13 @@ concept BsdfModel = requires(const B& bsdf, const Vec3<float>& w, const Vec2<flo
 };
 
 /// A material gives what it is at a point: its textures looked up at the surface coordinates uv in the lanes
-/// given (the other lanes of uv may hold anything). One without textures gives itself.
+/// given (the other lanes of uv may hold anything). One without textures gives itself. It states from which
+/// sides it scatters light towards a viewer in front (and, where that is both sides, behind).
 template <class M>
 concept MaterialModel = requires(const M& material, const Vec2<float>& uv, bool lanes) {
   requires BsdfModel<std::remove_cvref_t<decltype(material.at(uv, lanes))>>;
   { material.has_texture() } -> std::same_as<bool>;
+  { M::lit_sides } -> std::convertible_to<std::int32_t>;
 };
 
 using Material =
@@ -58,16 +62,36 @@ const std::vector<Plugin>& bsdf_plugins();
 Material make_material(const Object& description, const std::filesystem::path& directory,
                        std::vector<UnreadKey>& unread);
 
+/// The materials of a scene, by id.
+class Materials {
+ public:
+  explicit Materials(std::vector<Material> materials);
+
+  std::int32_t count() const { return std::int32_t(all_.size()); }
+  const Material& operator[](std::int32_t id) const { return all_[std::size_t(id)]; }
+  bool have_textures() const { return have_textures_; }  ///< Some need to know uv.
+  /// Of `lit_side`, for a viewer in front.
+  template <class F>
+  Int<F> lit_sides(const Int<F>& id) const {
+    return lit_sides_.at(id);
+  }
+
+ private:
+  std::vector<Material> all_;
+  LookupTable<std::int32_t> lit_sides_;
+  bool have_textures_ = false;
+};
+
 /// Whether the material needs to know uv.
 bool has_texture(const Material& material);
 
 /// f(model, lanes) for each distinct material among the lanes of `m`: what it is at `uv`, with the model's
 /// own type.
 template <class F, class Function>
-void for_each_material(const std::vector<Material>& materials, const Int<F>& material, const Vec2<F>& uv,
+void for_each_material(const Materials& materials, const Int<F>& material, const Vec2<F>& uv,
                        const Mask<F>& m, Function&& f) {
   for_each_unique<F>(material, m, [&](std::int32_t id, const Mask<F>& lanes) {
-    std::visit([&](const auto& bsdf) { f(bsdf.at(uv, lanes), lanes); }, materials[std::size_t(id)]);
+    std::visit([&](const auto& bsdf) { f(bsdf.at(uv, lanes), lanes); }, materials[id]);
   });
 }
 

@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "bsdf/bsdf_sample.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/lit_side.h"
 #include "bsdf/refractive_indices.h"
 #include "scenefile/parameters.h"
 
@@ -16,6 +17,7 @@ namespace etendue {
 struct Dielectric {
   RefractiveIndices indices;
 
+  static constexpr std::int32_t lit_sides = lit_side::none;
   bool has_texture() const { return false; }
   template <class F>
   Dielectric at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/warp.h"
 #include "bsdf/bsdf_sample.h"
+#include "bsdf/lit_side.h"
 #include "texture/texture.h"
 
 namespace etendue {
@@ -31,6 +32,7 @@ struct DiffuseBsdf {
 struct Diffuse {
   ColorTexture albedo = Colorf{0.5f, 0.5f, 0.5f};
 
+  static constexpr std::int32_t lit_sides = lit_side::front;
   bool has_texture() const { return !is_uniform(albedo); }
   template <class F>
   DiffuseBsdf<F> at(const Vec2<F>& uv, const Mask<F>& lanes) const {

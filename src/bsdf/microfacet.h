@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "bsdf/bsdf_sample.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/lit_side.h"
 #include "bsdf/lobe_choice.h"
 #include "bsdf/microfacet_distribution.h"
 #include "bsdf/refractive_indices.h"
@@ -20,6 +21,7 @@ struct Microfacet {
   MicrofacetDistribution distribution;  ///< Beckmann's.
   RefractiveIndices indices;
 
+  static constexpr std::int32_t lit_sides = lit_side::front;
   bool has_texture() const { return false; }
   template <class F>
   const Microfacet& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

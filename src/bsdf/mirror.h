@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "bsdf/bsdf_sample.h"
+#include "bsdf/lit_side.h"
 #include "scenefile/parameters.h"
 
 #include <limits>
@@ -10,6 +11,7 @@
 namespace etendue {
 
 struct Mirror {
+  static constexpr std::int32_t lit_sides = lit_side::none;
   bool has_texture() const { return false; }
   template <class F>
   Mirror at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

@@ -5,6 +5,7 @@
 #include "base/frame.h"
 #include "base/warp.h"
 #include "bsdf/bsdf_sample.h"
+#include "bsdf/lit_side.h"
 #include "bsdf/lobe_choice.h"
 #include "scenefile/parameters.h"
 
@@ -19,6 +20,7 @@ struct Phong {
   float exponent = 20;
   float specular_probability = 0.5f;
 
+  static constexpr std::int32_t lit_sides = lit_side::front;
   bool has_texture() const { return false; }
   template <class F>
   const Phong& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "bsdf/bsdf_sample.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/lit_side.h"
 #include "bsdf/microfacet_distribution.h"
 
 namespace etendue {
@@ -15,6 +16,7 @@ struct RoughConductor {
   Colorf eta, k;  ///< Complex refractive index, relative to the outside.
   Colorf specular_reflectance{1, 1, 1};
 
+  static constexpr std::int32_t lit_sides = lit_side::front;
   bool has_texture() const { return false; }
   template <class F>
   const RoughConductor& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

@@ -5,6 +5,7 @@
 #include "base/split_unit.h"
 #include "bsdf/bsdf_sample.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/lit_side.h"
 #include "bsdf/microfacet_distribution.h"
 #include "bsdf/refractive_indices.h"
 
@@ -18,6 +19,7 @@ struct RoughDielectric {
   MicrofacetDistribution distribution;
   RefractiveIndices indices;  ///< Not equal.
 
+  static constexpr std::int32_t lit_sides = lit_side::front | lit_side::back;
   bool has_texture() const { return false; }
   template <class F>
   const RoughDielectric& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

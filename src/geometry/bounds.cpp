@@ -13,6 +13,23 @@ std::array<double, 3> half_extent(const Disk& disk) {
           along(disk.along_x.z, disk.along_y.z)};
 }
 
+namespace {
+
+/// The box about `center`, rounded outwards, so that it never cuts the shape.
+Box box_about(const Vec3f& center, const std::array<double, 3>& half) {
+  const auto below = [](double c, double h) { return std::nextafter(float(c - h), -Box::infinity); };
+  const auto above = [](double c, double h) { return std::nextafter(float(c + h), Box::infinity); };
+  return {{below(center.x, half[0]), below(center.y, half[1]), below(center.z, half[2])},
+          {above(center.x, half[0]), above(center.y, half[1]), above(center.z, half[2])}};
+}
+
+}  // namespace
+
+Box box_of(const Disk& disk) { return box_about(disk.center, half_extent(disk)); }
+Box box_of(const Sphere& sphere) {
+  return box_about(sphere.center, {sphere.radius, sphere.radius, sphere.radius});
+}
+
 Sphere bounding_sphere(const Geometry& geometry) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};

@@ -1,6 +1,7 @@
-// The sphere around all shapes of a scene: what is outside of it hides nothing.
+// Around shapes: boxes of one, and the sphere of all, outside of which nothing hides anything.
 #pragma once
 
+#include "geometry/box.h"
 #include "geometry/geometry.h"
 
 #include <array>
@@ -13,5 +14,8 @@ Sphere bounding_sphere(const Geometry& geometry);
 
 /// Half the size of a disk's bounding box along each axis (m).
 std::array<double, 3> half_extent(const Disk& disk);
+
+Box box_of(const Disk& disk);  ///< Rounded outwards, like the next.
+Box box_of(const Sphere& sphere);
 
 }  // namespace etendue

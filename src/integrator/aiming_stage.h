@@ -10,6 +10,12 @@
 
 namespace etendue {
 
+/// Whether shadow packets that aim at one piece of one light are best traced as one: not where most lights
+/// are finely built. Most lights are taken for most rays.
+inline bool are_aimed_packets_coherent(const Lights& lights) {
+  return 2 * lights.table<MeshLights>().finely_built_count() <= lights.count();
+}
+
 /// Orders the shadow rays that are needed so that a packet goes from one part of the block's pixels to one
 /// piece of one light: a counting sort. Order only: results go back to the sample's place.
 inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
@@ -30,13 +36,14 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
     const int end = std::min(block.path.count, begin + quarter_size);
     const std::int32_t first_bin = quarter * bins_a_quarter;
     for (int i = begin; i < end; ++i) {
-      const std::int32_t bin = first_bin + (block.aim[i] >> aim_shift);
-      block.aim[i] = (bin & block.shadow_is_needed[i]) | (used_bins & ~block.shadow_is_needed[i]);
+      const std::int32_t aim = block.shadow_light[i] * light_pieces + block.shadow_piece[i];
+      const std::int32_t bin = first_bin + (aim >> aim_shift);
+      block.bin[i] = (bin & block.shadow_is_needed[i]) | (used_bins & ~block.shadow_is_needed[i]);
     }
   }
   // Two counts, of even and odd samples, so that neighbours in one bin need not wait for each other.
   std::array<std::array<std::int32_t, most_bins + 1>, 2> next{};
-  const std::int32_t* bins = block.aim.data();
+  const std::int32_t* bins = block.bin.data();
   const int even_count = block.path.count / 2 * 2;
   for (int i = 0; i < even_count; i += 2) {
     ++next[0][std::size_t(bins[i])];

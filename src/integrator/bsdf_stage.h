@@ -3,8 +3,7 @@
 
 #include "base/frame.h"
 #include "integrator/camera_stage.h"
-#include "integrator/path_rules.h"
-#include "integrator/sample_block.h"
+#include "integrator/contribution.h"
 #include "integrator/vertex.h"
 
 #include <limits>
@@ -25,20 +24,21 @@ F survival(const Color<F>& throughput, const F& eta) {
 }
 
 /// For each path: a direction from the BSDF (or phase function) at its vertex, the ray along it, and the
-/// path's throughput and density with it. `number` counts those of one vertex.
+/// path's throughput and density with it.
 template <class F>
 [[gnu::noinline]] void sample_bsdf(const Scene& scene, SampleBlock& block, const PathRules& rules,
-                                   int vertex_number, int number) {
+                                   int vertex_number) {
   PathColumns& path = block.path;
+  const int several = rules.bsdf_samples(vertex_number);
   const F infinity(std::numeric_limits<float>::infinity());
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
-    const Vertex<F> vertex(scene, path.ray, path.hit, i);
+    const Vertex<F> vertex(scene, load_ray<F>(path.ray, i), load_hit<F>(path.hit, i));
     if (!any(vertex.is_there)) {
       store_lanes(&block.next_ray.is_active[i], Int<F>(0));
       continue;
     }
-    const Vec2<F> u_bsdf = to_unit_floats<F>(sample_bits<F>(
-        scene, path, i, dimension::at_vertex(dimension::bsdf, vertex_number), number, rules.bsdf_samples));
+    const Vec2<F> u_bsdf = to_unit_floats<F>(
+        sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::bsdf, vertex_number)));
     const Frame<F> frame(vertex.ns);
     const Vec3<F> wo_local = frame.local_from_world(vertex.wo);
     BsdfSample<F> sample{{F(0), F(0), F(1)}, black<F>(), F(0), F(1)};
@@ -48,7 +48,7 @@ template <class F>
     const Vec3<F> wi = frame.world_from_local(sample.wi_local);
     const Mask<F> is_dirac = sample.pdf_solid_angle == infinity;
     Color<F> throughput = load_lanes<F>(path.throughput, i) * sample.weight;
-    if (rules.bsdf_samples > 1) throughput = throughput * F(1 / float(rules.bsdf_samples));
+    if (several > 1) throughput = throughput * F(1 / float(several));
     const F eta = load_lanes<F>(&path.eta[i]) * sample.eta;
     const Mask<F> is_number =
         mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
@@ -62,7 +62,7 @@ template <class F>
     Mask<F> goes_on =
         mask_and(vertex.is_there, is_number, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
                  mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
-    if (rules.is_dirac_only) goes_on = mask_and(goes_on, is_dirac);
+    if (rules.is_dirac_only()) goes_on = mask_and(goes_on, is_dirac);
     if (vertex_number >= first_roulette_vertex) {
       const F probability = survival(throughput, eta);
       const F u_roulette = to_unit_float(
@@ -76,15 +76,15 @@ template <class F>
     store_lanes(path.throughput, i, throughput);
     store_lanes(&path.pdf[i], sample.pdf_solid_angle);
     store_lanes(&path.eta[i], eta);
-    store_lanes(path.from, i, vertex.position);
+    if (rules.needs_both_pdfs()) store_receiver(path.receiver, i, vertex.receiver(scene));
   }
   block.clock.finish(Stage::bsdf_samples);
 }
 
 /// Leaves out the paths that have ended: the others move up, in their order, so that packets stay full, and
-/// their next ray becomes the one that arrives.
+/// their next ray becomes the one that arrives. \param keeps_receivers their vertices too, for weights
 template <class F>
-[[gnu::noinline]] void follow_paths(SampleBlock& block) {
+[[gnu::noinline]] void follow_paths(SampleBlock& block, bool keeps_receivers) {
   PathColumns& path = block.path;
   Column<std::int32_t>& kept = block.order;
   int count = 0;
@@ -112,9 +112,15 @@ template <class F>
     move(path.throughput.b);
     move(path.pdf);
     move(path.eta);
-    move(path.from.x);
-    move(path.from.y);
-    move(path.from.z);
+    if (keeps_receivers) {
+      ReceiverColumns& receiver = path.receiver;
+      for (Vec3Column* vectors : {&receiver.position, &receiver.ng, &receiver.ns}) {
+        move(vectors->x);
+        move(vectors->y);
+        move(vectors->z);
+      }
+      move(receiver.lit_sides);
+    }
     move_from(path.ray.origin.x, block.next_ray.origin.x);
     move_from(path.ray.origin.y, block.next_ray.origin.y);
     move_from(path.ray.origin.z, block.next_ray.origin.z);

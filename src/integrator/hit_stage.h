@@ -1,11 +1,11 @@
 // What rays hit, what becomes of them in a medium on the way, and the light that arrives along them.
 #pragma once
 
-#include "integrator/light_sampling.h"
-#include "integrator/path_rules.h"
-#include "integrator/sample_block.h"
+#include "integrator/camera_stage.h"
+#include "integrator/contribution.h"
 #include "integrator/vertex.h"
-#include "light/light.h"
+#include "integrator/weights.h"
+#include "lightsampler/light_sampler.h"
 #include "scene/scene.h"
 
 namespace etendue {
@@ -27,16 +27,13 @@ void closest_hits(const Scene& scene, SampleBlock& block, Coherence coherence) {
   block.clock.finish(Stage::closest_hits);
 }
 
-/// Of the rays that pass through the medium, some scatter before they hit anything. `number`: of the BSDF
-/// sample along which they come.
+/// Of the rays that pass through the medium, some scatter before they hit anything.
 template <class F>
-[[gnu::noinline]] void fly_through_medium(const Scene& scene, SampleBlock& block, const PathRules& rules,
-                                          int vertex, int number) {
+[[gnu::noinline]] void fly_through_medium(const Scene& scene, SampleBlock& block, int vertex) {
   PathColumns& path = block.path;
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
-    const int count = vertex == 0 ? 1 : rules.bsdf_samples;
-    const F u_flight = to_unit_float(
-        sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex), number, count).y);
+    const F u_flight =
+        to_unit_float(sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex)).y);
     const auto flight = scene.medium->sample_flight<F>(
         load_lanes<F>(path.ray.origin, i), load_lanes<F>(path.ray.direction, i),
         load_lanes<F>(&path.ray.t_near[i]), load_lanes<F>(&path.hit.t[i]), u_flight);
@@ -49,61 +46,67 @@ template <class F>
   block.clock.finish(Stage::medium);
 }
 
-/// The weight of light that a ray has met rather than a light sample; `f()` gives the density (1/sr) with
-/// which light samples find its direction.
+/// The weight of light that the rays i, i + 1 ... have met at a vertex, and whose density (1/sr) by one light
+/// sample `pdf_light(receiver)` gives.
 template <class F, class Function>
-F met_light_weight(const PathRules& rules, const PathColumns& path, int i, const Mask<F>& m, Function&& f) {
-  const F pdf = load_lanes<F>(&path.pdf[i]);
-  const F infinity(std::numeric_limits<float>::infinity());
-  if (rules.direct_light == DirectLight::lights) return select(pdf < infinity, F(0), F(1));
-  if (!needs_both_pdfs(rules.direct_light)) return mis_weight(rules.direct_light, pdf, F(0));
-  if (!any(mask_and(m, pdf < infinity))) return F(1);
-  return mis_weight(rules.direct_light, select(m, pdf, F(1)) * F(float(rules.bsdf_samples)),
-                    f() * F(float(rules.light_samples)));
+F weight_at_hit(const PathRules& rules, const PathColumns& path, int i, int vertex, const Mask<F>& m,
+                Function&& pdf_light) {
+  F pdf = load_lanes<F>(&path.pdf[i]);
+  if (vertex > 0) pdf = pdf * F(float(rules.bsdf_samples(vertex - 1)));
+  return met_light_weight<F>(rules, pdf, m, [&] {
+    return pdf_light(load_receiver<F>(path.receiver, i)) * F(float(rules.light_samples()->count));
+  });
 }
 
 /// Adds the emission of the lights that rays have hit from the front.
 template <class F>
-[[gnu::noinline]] void add_emission(const Scene& scene, SampleBlock& block, const PathRules& rules) {
+[[gnu::noinline]] void add_emission(const Scene& scene, const LightSampler& light_sampler, SampleBlock& block,
+                                    const PathRules& rules, int vertex) {
   const PathColumns& path = block.path;
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
-    const Int<F> geometry = load_lanes<Int<F>>(&path.hit.geometry[i]);
-    const Mask<F> is_hit = less(Int<F>(-1), geometry);
-    const Int<F> light = gather(scene.geometry.light.data(), select(is_hit, geometry, Int<F>(0)));
+    const Hit<F> hit = load_hit<F>(path.hit, i);
+    const Mask<F> is_hit = less(Int<F>(-1), hit.geometry);
+    const Int<F> light = gather(scene.geometry.light.data(), select(is_hit, hit.geometry, Int<F>(0)));
     const Mask<F> is_light = mask_and(is_hit, less(Int<F>(-1), light));
     if (!any(is_light)) continue;
-    const Vec3<F> ng = normalize(load_lanes<F>(path.hit.ng, i));
-    const Vec3<F> direction = load_lanes<F>(path.ray.direction, i);
-    const Mask<F> is_front = mask_and(is_light, dot(ng, direction) < F(0));
+    const Ray<F> ray = load_ray<F>(path.ray, i);
+    const Vec3<F> ng = normalize(hit.ng);
+    const Mask<F> is_front = mask_and(is_light, dot(ng, ray.direction) < F(0));
     if (!any(is_front)) continue;
-    const F weight = met_light_weight<F>(rules, path, i, is_front, [&] {
-      const Vec3<F> hit = load_lanes<F>(path.ray.origin, i) + direction * load_lanes<F>(&path.hit.t[i]);
-      return light_pdf_solid_angle<F>(scene, light, load_lanes<F>(path.from, i), hit, ng, direction,
-                                      is_front);
+    const F weight = weight_at_hit<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
+      const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), hit.primitive);
+      const LightHit<F> met{ray.origin + ray.direction * hit.t, ng, ray.direction, hit.primitive};
+      return scene.lights.pdf_solid_angle<F>(light, pmf, receiver, met, is_front);
     });
-    add_radiance<F>(block, i, is_front,
-                    load_lanes<F>(path.throughput, i) * scene.lights.radiance<F>(light, is_front) * weight);
+    add_contribution<F>(
+        block, i, is_front,
+        load_lanes<F>(path.throughput, i) * scene.lights.radiance<F>(light, is_front) * weight,
+        {light, Technique::bsdf, vertex});
   }
   block.clock.finish(Stage::emission);
 }
 
 /// Adds the light from infinity that reaches rays which have left the scene.
 template <class F>
-[[gnu::noinline]] void add_environment(const Scene& scene, SampleBlock& block, const PathRules& rules) {
+[[gnu::noinline]] void add_environment(const Scene& scene, const LightSampler& light_sampler,
+                                       SampleBlock& block, const PathRules& rules, int vertex) {
   const PathColumns& path = block.path;
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
     const Mask<F> is_outside = mask_and(equal(load_lanes<Int<F>>(&path.hit.geometry[i]), Int<F>(-1)),
                                         load_mask<F>(&path.ray.is_active[i]));
     if (!any(is_outside)) continue;
     const Vec3<F> direction = load_lanes<F>(path.ray.direction, i);
-    Color<F> sum = black<F>();
-    for (int light = 0; light < scene.lights.infinite_count(); ++light) {
-      const F weight = met_light_weight<F>(rules, path, i, is_outside, [&] {
-        return environment_pdf_solid_angle<F>(scene, light, direction, is_outside);
+    for (int k = 0; k < scene.lights.infinite_count(); ++k) {
+      const Int<F> light(scene.lights.infinite_light(k));
+      const F weight = weight_at_hit<F>(rules, path, i, vertex, is_outside, [&](const Receiver<F>& receiver) {
+        return light_sampler.pmf<F>(receiver, light, Int<F>(0)) *
+               scene.lights.infinite_pdf_solid_angle<F>(k, direction, is_outside);
       });
-      sum = sum + environment_radiance<F>(scene, light, direction, is_outside) * weight;
+      add_contribution<F>(block, i, is_outside,
+                          load_lanes<F>(path.throughput, i) *
+                              (scene.lights.infinite_radiance<F>(k, direction, is_outside) * weight),
+                          {light, Technique::bsdf, vertex});
     }
-    add_radiance<F>(block, i, is_outside, load_lanes<F>(path.throughput, i) * sum);
   }
   block.clock.finish(Stage::emission);
 }

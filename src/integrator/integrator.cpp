@@ -2,61 +2,15 @@
 
 #include "integrator/unlit.h"
 
-#include <array>
+#include <algorithm>
 #include <fmt/format.h>
-#include <optional>
+#include <iterator>
 
 namespace etendue {
 
 namespace {
 
 using Type = Parameter::Type;
-
-constexpr PathRules direct_rules(DirectLight direct_light) { return {.direct_light = direct_light}; }
-constexpr PathRules path_rules(DirectLight direct_light) {
-  return {.direct_light = direct_light, .most_vertices = PathRules::unlimited};
-}
-constexpr PathRules every_light_rules() {
-  return {.direct_light = DirectLight::lights, .is_every_light = true};
-}
-constexpr PathRules whitted_rules() {
-  return {.direct_light = DirectLight::lights, .most_vertices = PathRules::unlimited, .is_dirac_only = true};
-}
-
-/// What a name stands for.
-struct Meaning {
-  std::string_view name;
-  std::string_view canonical;  ///< The name that says it whatever the dialect.
-  PathRules rules;
-};
-
-constexpr std::array meanings{
-    Meaning{"light", "light", direct_rules(DirectLight::lights)},
-    Meaning{"area", "light", direct_rules(DirectLight::lights)},
-    Meaning{"direct_ems", "light", direct_rules(DirectLight::lights)},
-    Meaning{"direct", "direct", direct_rules(DirectLight::bsdf)},
-    Meaning{"direct_mats", "direct", direct_rules(DirectLight::bsdf)},
-    Meaning{"average", "average", direct_rules(DirectLight::half)},
-    Meaning{"mis", "mis", direct_rules(DirectLight::balance)},
-    Meaning{"direct_mis", "mis", direct_rules(DirectLight::balance)},
-    Meaning{"every_light", "every_light", every_light_rules()},
-    Meaning{"whitted", "whitted", whitted_rules()},
-    Meaning{"path", "path_mis", path_rules(DirectLight::balance)},
-    Meaning{"path_mis", "path_mis", path_rules(DirectLight::balance)},
-    Meaning{"mipath", "path_mis", path_rules(DirectLight::balance)},
-    Meaning{"path_ems", "path_ems", path_rules(DirectLight::lights)},
-    Meaning{"path_mats", "path_mats", path_rules(DirectLight::bsdf)},
-};
-
-const Meaning* find(std::string_view name) {
-  for (const Meaning& meaning : meanings)
-    if (meaning.name == name) return &meaning;
-  return nullptr;
-}
-
-IntegratorSettings settings_of(const Meaning& meaning) {
-  return {.name = meaning.canonical, .kind = IntegratorKind::path, .rules = meaning.rules};
-}
 
 const Parameter heuristic_parameter{"heuristic", Type::text, "balance", "", "balance or power (exponent 2)"};
 
@@ -73,12 +27,76 @@ const Plugin sampling_direct_plugin{
      heuristic_parameter},
     {}};
 
-DirectLight heuristic_of(const Parameters& parameters) {
+/// The keys that a row's integrator takes.
+enum class Keys { none, heuristic, sampling };
+
+/// What a name stands for.
+struct Row {
+  std::string_view name;
+  std::string_view canonical;  ///< The name that says it whatever the dialect.
+  std::string_view meaning;    ///< Of other names than the canonical one, nothing.
+  Keys keys;
+  PathRules (*rules)(Heuristic heuristic);
+};
+
+PathRules light_rules(Heuristic) { return PathRules::direct(ByLights{}); }
+PathRules direct_rules(Heuristic) { return PathRules::direct(ByBsdf{}); }
+PathRules average_rules(Heuristic) { return PathRules::direct(ByBoth{Heuristic::average}); }
+PathRules mis_rules(Heuristic heuristic) { return PathRules::direct(ByBoth{heuristic}); }
+PathRules every_light_rules(Heuristic) { return PathRules::direct(ByLights{{.sampler = "all"}}); }
+PathRules whitted_rules(Heuristic) { return PathRules::whitted({}); }
+PathRules path_ems_rules(Heuristic) { return PathRules::paths(ByLights{}); }
+PathRules path_mats_rules(Heuristic) { return PathRules::paths(ByBsdf{}); }
+PathRules path_mis_rules(Heuristic heuristic) { return PathRules::paths(ByBoth{heuristic}); }
+
+constexpr Row table[]{
+    {"light", "light", "Area sampling: each sample takes one point on one light.", Keys::none, light_rules},
+    {"area", "light", "", Keys::none, light_rules},
+    {"direct_ems", "light", "", Keys::none, light_rules},
+    {"direct", "direct", "", Keys::sampling, direct_rules},
+    {"direct_mats", "direct", "BRDF sampling: each sample takes one direction from the BSDF.", Keys::none,
+     direct_rules},
+    {"average", "average", "Half of a light sample plus half of a BSDF sample.", Keys::none, average_rules},
+    {"mis", "mis", "A light sample and a BSDF sample, combined by multiple importance sampling.",
+     Keys::heuristic, mis_rules},
+    {"direct_mis", "mis", "", Keys::heuristic, mis_rules},
+    {"every_light", "every_light", "Each sample takes one point on every light, and adds them up.",
+     Keys::none, every_light_rules},
+    {"whitted", "whitted", "Light samples, seen through mirrors and smooth dielectrics too.", Keys::none,
+     whitted_rules},
+    {"path", "path_mis", "", Keys::heuristic, path_mis_rules},
+    {"path_ems", "path_ems", "Paths with any number of bounces; at each, direct light by light samples.",
+     Keys::none, path_ems_rules},
+    {"path_mats", "path_mats", "Paths with any number of bounces that find lights by chance.", Keys::none,
+     path_mats_rules},
+    {"path_mis", "path_mis",
+     "Paths with any number of bounces; at each, direct light by light and BSDF samples, combined by "
+     "multiple importance sampling.",
+     Keys::heuristic, path_mis_rules},
+    {"mipath", "path_mis", "", Keys::heuristic, path_mis_rules},
+};
+
+Plugin plugin_of(const Row& row) {
+  if (row.keys == Keys::sampling) return sampling_direct_plugin;
+  Plugin plugin{"integrator", std::string(row.name), std::string(row.meaning), {}, {}};
+  if (row.meaning.empty()) plugin.meaning = fmt::format("Another name of {}.", row.canonical);
+  if (row.keys == Keys::heuristic) plugin.parameters = {heuristic_parameter};
+  return plugin;
+}
+
+/// Null for a name that no row has.
+const Row* find(std::string_view name) {
+  const auto* row = std::find_if(std::begin(table), std::end(table),
+                                 [&](const Row& candidate) { return candidate.name == name; });
+  return row == std::end(table) ? nullptr : row;
+}
+
+Heuristic heuristic_of(const Parameters& parameters) {
   const std::string heuristic = parameters.text("heuristic");
   if (heuristic != "balance" && heuristic != "power")
     throw InputError(parameters.location("heuristic"), "unknown heuristic '" + heuristic + "'",
                      known_names(heuristic, {"balance", "power"}));
-  return heuristic == "power" ? DirectLight::power : DirectLight::balance;
+  return heuristic == "power" ? Heuristic::power : Heuristic::balance;
 }
 
 int sample_count(const Parameters& parameters, std::string_view name) {
@@ -93,96 +111,93 @@ int sample_count(const Parameters& parameters, std::string_view name) {
 IntegratorSettings make_sampling_direct(const Object& description, std::vector<UnreadKey>& unread) {
   const Parameters parameters(description, sampling_direct_plugin, unread);
   const std::string method = parameters.text("samplingMethod");
-  const int light_samples = sample_count(parameters, "emitterSamples"),
-            bsdf_samples = sample_count(parameters, "brdfSamples");
-  const DirectLight heuristic = heuristic_of(parameters);
-  const auto settings = [&](std::string_view name, DirectLight direct_light) {
-    IntegratorSettings made{.name = name, .kind = IntegratorKind::path, .rules = direct_rules(direct_light)};
-    made.rules.light_samples = direct_light == DirectLight::bsdf ? 0 : light_samples;
-    made.rules.bsdf_samples = direct_light == DirectLight::lights ? 0 : bsdf_samples;
-    if (made.rules.light_samples + made.rules.bsdf_samples == 0)
-      throw InputError(
-          parameters.location(direct_light == DirectLight::bsdf ? "brdfSamples" : "emitterSamples"),
-          fmt::format("samplingMethod '{}' with 0 samples: the image would be black", method));
-    return made;
-  };
-  if (method == "emitter" || (method == "mis" && bsdf_samples == 0))
-    return settings("light", DirectLight::lights);
-  if (method == "brdf" || (method == "mis" && light_samples == 0))
-    return settings("direct", DirectLight::bsdf);
-  if (method == "mis") return settings("mis", heuristic);
-  throw InputError(parameters.location("samplingMethod"), "unknown samplingMethod '" + method + "'",
-                   known_names(method, {"brdf", "emitter", "mis"}));
-}
-
-Plugin plugin(std::string name, std::string meaning, std::vector<Parameter> parameters = {}) {
-  return {"integrator", std::move(name), std::move(meaning), std::move(parameters), {}};
-}
-
-std::vector<Plugin> with_unlit(std::vector<Plugin> plugins) {
-  plugins.insert(plugins.end(), unlit_plugins().begin(), unlit_plugins().end());
-  return plugins;
+  const LightSamples light_samples{.count = sample_count(parameters, "emitterSamples")};
+  const int bsdf_samples = sample_count(parameters, "brdfSamples");
+  const Heuristic heuristic = heuristic_of(parameters);
+  if (method != "brdf" && method != "emitter" && method != "mis")
+    throw InputError(parameters.location("samplingMethod"), "unknown samplingMethod '" + method + "'",
+                     known_names(method, {"brdf", "emitter", "mis"}));
+  const bool has_lights = method != "brdf" && light_samples.count > 0,
+             has_bsdf = method != "emitter" && bsdf_samples > 0;
+  if (has_lights && has_bsdf)
+    return {"mis", PathRules::direct(ByBoth{heuristic, light_samples, bsdf_samples})};
+  if (has_lights) return {"light", PathRules::direct(ByLights{light_samples})};
+  if (has_bsdf) return {"direct", PathRules::direct(ByBsdf{bsdf_samples})};
+  throw InputError(parameters.location(method == "emitter" ? "emitterSamples" : "brdfSamples"),
+                   fmt::format("samplingMethod '{}' with 0 samples: the image would be black", method));
 }
 
 }  // namespace
 
 const std::vector<Plugin>& integrator_plugins() {
-  static const std::vector<Plugin> plugins = with_unlit({
-      plugin("light", "Area sampling: each sample takes one point on one light."),
-      plugin("area", "Another name of light."),
-      plugin("direct_ems", "Another name of light."),
-      sampling_direct_plugin,
-      plugin("direct_mats", "BRDF sampling: each sample takes one direction from the BSDF."),
-      plugin("average", "Half of a light sample plus half of a BSDF sample."),
-      plugin("mis", "A light sample and a BSDF sample, combined by multiple importance sampling.",
-             {heuristic_parameter}),
-      plugin("direct_mis", "Another name of mis.", {heuristic_parameter}),
-      plugin("every_light", "Each sample takes one point on every light, and adds them up."),
-      plugin("whitted", "Light samples, seen through mirrors and smooth dielectrics too."),
-      plugin("path", "Another name of path_mis.", {heuristic_parameter}),
-      plugin("path_ems", "Paths with any number of bounces; at each, direct light by light samples."),
-      plugin("path_mats", "Paths with any number of bounces that find lights by chance."),
-      plugin("path_mis",
-             "Paths with any number of bounces; at each, direct light by light and BSDF samples, combined by "
-             "multiple importance sampling.",
-             {heuristic_parameter}),
-      plugin("mipath", "Another name of path_mis.", {heuristic_parameter}),
-  });
+  static const std::vector<Plugin> plugins = [] {
+    std::vector<Plugin> made;
+    for (const Row& row : table) made.push_back(plugin_of(row));
+    made.insert(made.end(), unlit_plugins().begin(), unlit_plugins().end());
+    return made;
+  }();
   return plugins;
 }
 
-std::string_view heuristic_name(DirectLight direct_light) {
-  return direct_light == DirectLight::power ? "power" : direct_light == DirectLight::balance ? "balance" : "";
+std::string_view IntegratorSettings::light_sampler() const {
+  const PathRules* paths = path_rules();
+  return paths && paths->light_samples() ? paths->light_samples()->sampler : "";
+}
+
+std::string_view heuristic_name(const IntegratorSettings& integrator) {
+  const PathRules* rules = integrator.path_rules();
+  if (!rules || !rules->heuristic()) return "";
+  switch (*rules->heuristic()) {
+    case Heuristic::average:
+      break;
+    case Heuristic::balance:
+      return "balance";
+    case Heuristic::power:
+      return "power";
+  }
+  return "";
 }
 
 IntegratorSettings make_integrator(const Object& description, Dialect dialect,
                                    std::vector<UnreadKey>& unread) {
   if (is_unlit(description.type)) return make_unlit(description, unread);
-  if (description.type == sampling_direct_plugin.name && dialect == Dialect::nori)
+  const Row* row = find(description.type);
+  if (!row) throw unknown_plugin(description, integrator_plugins());
+  if (row->keys == Keys::sampling && dialect == Dialect::nori)
     return make_sampling_direct(description, unread);
-  const Plugin* known = nullptr;
-  for (const Plugin& candidate : integrator_plugins())
-    if (candidate.name == description.type) known = &candidate;
-  if (!known) throw unknown_plugin(description, integrator_plugins());
-  std::string_view name = description.type;
-  if (name == sampling_direct_plugin.name && dialect == Dialect::nori_eth) name = "every_light";
-  Plugin described = *known;
-  if (known->name == sampling_direct_plugin.name) described.parameters.clear();
-  const Parameters parameters(description, described, unread);
-  IntegratorSettings settings = settings_of(*find(name));
-  if (parameters.has("heuristic")) settings.rules.direct_light = heuristic_of(parameters);
-  return settings;
+  // In the other dialects this one takes no keys, and in one of them it means another.
+  if (row->keys == Keys::sampling) row = find(dialect == Dialect::nori_eth ? "every_light" : "direct_mats");
+  Plugin plugin = plugin_of(*row);
+  plugin.name = description.type;
+  const Parameters parameters(description, plugin, unread);
+  return {row->canonical,
+          row->rules(row->keys == Keys::heuristic ? heuristic_of(parameters) : Heuristic::balance)};
 }
 
 IntegratorSettings integrator_from_name(std::string_view name) {
   if (is_unlit(name)) return unlit_from_name(name);
-  const Meaning* meaning = find(name);
-  if (!meaning) throw unknown_plugin("integrator", name, integrator_plugins());
-  return settings_of(*meaning);
+  const Row* row = find(name);
+  if (!row) throw unknown_plugin("integrator", name, integrator_plugins());
+  return {row->canonical, row->rules(Heuristic::balance)};
+}
+
+IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler) {
+  const std::string_view name = known_light_sampler(light_sampler);
+  if (integrator.light_sampler().empty())
+    throw InputError(
+        fmt::format("light sampler '{}': the integrator {} takes no samples of the lights\n"
+                    "take light, mis, path_ems or path_mis",
+                    name, integrator.name));
+  return {integrator.name, integrator.path_rules()->with_light_sampler(name)};
+}
+
+LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights) {
+  const std::string_view name = integrator.light_sampler();
+  return make_light_sampler(name.empty() ? LightSamples{}.sampler : name, lights);
 }
 
 std::string unseen_lights(const IntegratorSettings& integrator, int dirac_lights) {
-  if (dirac_lights == 0 || !integrator.needs_lights() || integrator.rules.has_light_samples()) return "";
+  if (dirac_lights == 0 || !integrator.needs_lights() || integrator.path_rules()->light_samples()) return "";
   return fmt::format(
       "{} samples no lights, so {} point, spot or directional light{} will not shine\n"
       "take light, mis, path_ems or path_mis",

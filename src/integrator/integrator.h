@@ -1,34 +1,39 @@
 // Which integrator, with its parameters: chosen once a render, by name.
 //
-// To add one: if it is a way to trace paths, give it its PathRules in the table in integrator.cpp. Otherwise
-// write integrator/NAME.h as a list of stages, add its kind here, its name and its plugin description in
-// integrator.cpp, and its call in run_integrator.h.
+// To add one: if it is a way to trace paths, give it a row with its PathRules in the table in integrator.cpp.
+// Otherwise write integrator/NAME.h as a list of stages, a struct of what it is told in unlit_rules.h, its
+// row in unlit.cpp; add the struct to IntegratorRules, and the compiler asks for its call in
+// run_integrator.h.
 #pragma once
 
 #include "integrator/path_rules.h"
 #include "integrator/unlit_rules.h"
+#include "lightsampler/light_sampler.h"
 #include "scenefile/parameters.h"
 
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace etendue {
 
-enum class IntegratorKind { path, normals, visibility, material, simple };
+using IntegratorRules = std::variant<PathRules, ShowNormals, VisibilityRules, ShowMaterial, SimpleLight>;
 
 struct IntegratorSettings {
   std::string_view name = "light";  ///< Of those that integrator_from_name knows.
-  IntegratorKind kind = IntegratorKind::path;
-  PathRules rules;               ///< Of kind path.
-  VisibilityRules visibility{};  ///< Of kind visibility.
-  SimpleLight simple{};          ///< Of kind simple.
+  IntegratorRules rules = PathRules::direct(ByLights{});
 
-  bool needs_lights() const { return kind == IntegratorKind::path; }
+  /// Null of those that trace no paths.
+  const PathRules* path_rules() const { return std::get_if<PathRules>(&rules); }
+  bool needs_lights() const { return path_rules() != nullptr; }
+  /// How lights are chosen; empty where none are.
+  std::string_view light_sampler() const;
 };
 
 const std::vector<Plugin>& integrator_plugins();
-std::string_view heuristic_name(DirectLight direct_light);  ///< "balance", "power"; empty for the others.
+/// "balance", "power"; empty where weights do not depend on densities.
+std::string_view heuristic_name(const IntegratorSettings& integrator);
 
 /// From the scene file, where some names mean another thing in each generation of the family: see
 /// docs/scene_format.md. Throws InputError with the known names.
@@ -36,6 +41,13 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
                                    std::vector<UnreadKey>& unread);
 /// From the command line: a name, its parameters at their defaults. `direct` is BRDF sampling.
 IntegratorSettings integrator_from_name(std::string_view name);
+
+/// The same with another light sampler. Throws InputError for an unknown one, and where the integrator
+/// samples no lights.
+IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler);
+
+/// Over the lights of a scene, which it may not outlive; where the integrator samples none, any.
+LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights);
 
 /// A warning for where the integrator cannot see the Dirac lights (point, spot, directional) that a scene
 /// has; else empty.

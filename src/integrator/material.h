@@ -4,6 +4,7 @@
 #include "base/frame.h"
 #include "bsdf/bsdf.h"
 #include "integrator/camera_stage.h"
+#include "integrator/contribution.h"
 #include "integrator/hit_stage.h"
 #include "integrator/vertex.h"
 
@@ -16,7 +17,7 @@ void material(const Scene& scene, SampleBlock& block) {
   camera_rays<F>(scene, block);
   closest_hits<F>(scene, block, Coherence::coherent);
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const Vertex<F> vertex(scene, block.path.ray, block.path.hit, i);
+    const Vertex<F> vertex(scene, load_ray<F>(block.path.ray, i), load_hit<F>(block.path.hit, i));
     const Vec3<F> wo_local = Frame<F>(vertex.ns).local_from_world(vertex.wo), wi_local{F(0), F(0), F(1)};
     for_each_material<F>(scene.materials, vertex.material, vertex.uv, vertex.is_surface,
                          [&](const auto& bsdf, const Mask<F>& lanes) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrator/camera_stage.h"
+#include "integrator/contribution.h"
 #include "integrator/hit_stage.h"
 #include "integrator/vertex.h"
 
@@ -14,7 +15,7 @@ void normals(const Scene& scene, SampleBlock& block) {
   camera_rays<F>(scene, block);
   closest_hits<F>(scene, block, Coherence::coherent);
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const Vertex<F> vertex(scene, block.path.ray, block.path.hit, i);
+    const Vertex<F> vertex(scene, load_ray<F>(block.path.ray, i), load_hit<F>(block.path.hit, i));
     add_radiance<F>(block, i, vertex.is_surface, {abs(vertex.ns.x), abs(vertex.ns.y), abs(vertex.ns.z)});
   }
 }

@@ -9,53 +9,57 @@
 
 namespace etendue {
 
-/// Takes the paths to their next vertex, and adds the light that they meet there. `number`: of the BSDF
-/// sample that took them there.
+/// What a path integrator works with, beside the block.
+struct PathSetting {
+  const Scene& scene;
+  const LightSampler& light_sampler;
+  const PathRules& rules;
+  bool is_reordering;  ///< Aim shadow packets; off only to show that it changes nothing.
+};
+
+/// Takes the paths to their next vertex, adds the light that they meet there, and the light that comes
+/// straight from lights.
 template <class F>
-void arrive(const Scene& scene, SampleBlock& block, const PathRules& rules, int vertex, int number) {
+void visit(const PathSetting& with, SampleBlock& block, int vertex) {
+  const Scene& scene = with.scene;
   closest_hits<F>(scene, block, vertex == 0 ? Coherence::coherent : Coherence::incoherent);
-  if (scene.medium) fly_through_medium<F>(scene, block, rules, vertex, number);
-  add_emission<F>(scene, block, rules);
-  if (scene.lights.infinite_count() > 0) add_environment<F>(scene, block, rules);
-  block.shadow_count = 0;
+  if (scene.medium) fly_through_medium<F>(scene, block, vertex);
+  add_emission<F>(scene, with.light_sampler, block, with.rules, vertex);
+  if (scene.lights.infinite_count() > 0)
+    add_environment<F>(scene, with.light_sampler, block, with.rules, vertex);
+  if (with.rules.is_scattering(vertex) && with.rules.light_samples() && scene.lights.count() > 0)
+    add_light_samples<F>(scene, with.light_sampler, block, with.rules, vertex, with.is_reordering);
 }
 
-/// Each sample is a path from the camera. At each of its vertices: the emission that it meets, the light that
-/// comes straight from lights, and a direction from the BSDF, along which it goes on.
+/// The paths that have come to vertex 0, to their ends: at each vertex a direction from the BSDF, along which
+/// they go on to the next.
 template <class F>
-void path(const Scene& scene, SampleBlock& block, const PathRules& rules, bool is_reordering) {
-  camera_rays<F>(scene, block);
+void go_on(const PathSetting& with, SampleBlock& block, int branch) {
   for (int vertex = 0; block.path.count > 0; ++vertex) {
-    arrive<F>(scene, block, rules, vertex, 0);
-    const bool is_scattering = vertex < rules.most_vertices;
-    if (is_scattering && rules.has_light_samples() && scene.lights.count() > 0)
-      add_light_samples<F>(scene, block, rules, vertex, is_reordering);
-    const bool is_followed = is_scattering && rules.is_followed(vertex);
-    if (is_followed) sample_bsdf<F>(scene, block, rules, vertex, 0);
-    if (block.on_vertex) (*block.on_vertex)(block, vertex, 0);
+    if (vertex > 0) visit<F>(with, block, vertex);
+    const bool is_followed = with.rules.bsdf_samples(vertex) > 0;
+    if (is_followed) sample_bsdf<F>(with.scene, block, with.rules, vertex);
+    if (block.watcher) block.watcher->on_vertex(block, vertex, branch);
     if (!is_followed) break;
-    follow_paths<F>(block);
+    follow_paths<F>(block, with.rules.needs_both_pdfs());
   }
 }
 
-/// Direct light by several BSDF samples at the one vertex of each path.
+/// Each sample is a path from the camera, or, where several BSDF samples leave its first vertex, as many.
 template <class F>
-void direct_light_by_several(const Scene& scene, SampleBlock& block, const PathRules& rules,
-                             bool is_reordering) {
-  camera_rays<F>(scene, block);
-  arrive<F>(scene, block, rules, 0, 0);
-  if (rules.has_light_samples() && scene.lights.count() > 0)
-    add_light_samples<F>(scene, block, rules, 0, is_reordering);
-  const auto at_vertex = std::make_unique<PathColumns>(block.path);
-  for (int number = 0; number < rules.bsdf_samples; ++number) {
-    block.path = *at_vertex;
+void path(const PathSetting& with, SampleBlock& block) {
+  camera_rays<F>(with.scene, block);
+  visit<F>(with, block, 0);
+  const int branches = with.rules.bsdf_samples(0);
+  if (branches <= 1) return go_on<F>(with, block, 0);
+  const auto at_first = std::make_unique<PathColumns>(block.path);
+  for (int branch = 0; branch < branches; ++branch) {
+    block.path = *at_first;
     block.is_in_sample_order = true;
-    sample_bsdf<F>(scene, block, rules, 0, number);
-    if (block.on_vertex) (*block.on_vertex)(block, 0, number);
-    follow_paths<F>(block);
-    if (block.path.count == 0) continue;
-    arrive<F>(scene, block, rules, 1, number);
-    if (block.on_vertex) (*block.on_vertex)(block, 1, number);
+    // Its random numbers from here on are those of a sample of its own.
+    for (int i = 0; i < block.path.padded_count; ++i)
+      block.path.index[i] = at_first->index[i] * std::uint32_t(branches) + std::uint32_t(branch);
+    go_on<F>(with, block, branch);
   }
 }
 

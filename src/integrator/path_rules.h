@@ -4,57 +4,101 @@
 #include "base/simd_math.h"
 
 #include <limits>
+#include <string_view>
+#include <variant>
 
 namespace etendue {
 
-/// How the light that reaches a vertex straight from a light is estimated.
-///   lights: by a sample of the lights. bsdf: by whether the path's next ray meets a light. half: both, each
-///   counted half (the plain average). balance, power: both, by multiple importance sampling (Veach 1997,
-///   "Robust Monte Carlo methods for light transport simulation", eq. 9.8, and section 9.2.2.2 with exponent
-///   2).
-enum class DirectLight { lights, bsdf, half, balance, power };
+/// How two techniques share the light that both can find. average: each counted half. balance, power: by
+/// multiple importance sampling (Veach 1997, "Robust Monte Carlo methods for light transport simulation",
+/// eq. 9.8, and section 9.2.2.2 with exponent 2).
+enum class Heuristic { average, balance, power };
 
-struct PathRules {
-  static constexpr int unlimited = std::numeric_limits<int>::max();
+struct LightSamples {
+  int count = 1;                         ///< At each vertex.
+  std::string_view sampler = "uniform";  ///< Which light: a name of light_sampler_plugins().
 
-  DirectLight direct_light = DirectLight::lights;
-  int most_vertices = 1;        ///< Vertices that scatter light; 1: direct light only.
-  bool is_dirac_only = false;   ///< Paths go on only from mirrors and smooth dielectrics.
-  bool is_every_light = false;  ///< A sample of each light, instead of one light chosen at random.
-  int light_samples = 1, bsdf_samples = 1;  ///< At each vertex; more than 1 only where most_vertices is 1.
-
-  bool has_light_samples() const { return direct_light != DirectLight::bsdf && light_samples > 0; }
-  /// Whether paths go on from their vertex number `vertex`, if only to see which light they meet.
-  bool is_followed(int vertex) const {
-    const bool is_last = vertex + 1 >= most_vertices;
-    return bsdf_samples > 0 && !(is_last && direct_light == DirectLight::lights);
-  }
+  friend bool operator==(const LightSamples&, const LightSamples&) = default;
 };
 
-/// The weight of a direction that one technique found with density `pdf_own`, times its number of samples,
-/// and that the other would find with `pdf_other`, times its own (both 1/sr; the light's density includes the
-/// probability of choosing it). A density of infinity is a Dirac delta, which the other technique cannot
-/// find. The only place with weights.
-template <class F>
-F mis_weight(DirectLight direct_light, const F& pdf_own, const F& pdf_other) {
-  switch (direct_light) {
-    case DirectLight::lights:
-    case DirectLight::bsdf:
-      return F(1);
-    case DirectLight::half:
-      return select(pdf_own < F(std::numeric_limits<float>::infinity()), F(0.5f), F(1));
-    case DirectLight::balance:
-      return F(1) / (F(1) + pdf_other / pdf_own);
-    case DirectLight::power:
-      break;
-  }
-  const F ratio = pdf_other / pdf_own;
-  return F(1) / (F(1) + ratio * ratio);
-}
+// How the light that reaches a vertex straight from a light is estimated.
 
-/// Whether the weight depends on the densities of both techniques.
-inline bool needs_both_pdfs(DirectLight direct_light) {
-  return direct_light == DirectLight::balance || direct_light == DirectLight::power;
-}
+struct ByLights {
+  LightSamples lights{};
+
+  friend bool operator==(const ByLights&, const ByLights&) = default;
+};
+/// By whether the path's next ray meets a light.
+struct ByBsdf {
+  int bsdf_samples = 1;  ///< At the first vertex, each a path of its own; one at those behind.
+
+  friend bool operator==(const ByBsdf&, const ByBsdf&) = default;
+};
+struct ByBoth {
+  Heuristic heuristic = Heuristic::balance;
+  LightSamples lights{};
+  int bsdf_samples = 1;  ///< As of ByBsdf.
+
+  friend bool operator==(const ByBoth&, const ByBoth&) = default;
+};
+using DirectLight = std::variant<ByLights, ByBsdf, ByBoth>;
+
+/// How far paths go: only to the first vertex, whose direct light is all; on from there without end; or on
+/// from mirrors and smooth dielectrics only, whose light no sample of the lights finds.
+enum class PathLength { one_vertex, unlimited, through_diracs };
+
+class PathRules {
+ public:
+  static PathRules direct(const DirectLight& direct_light) { return {direct_light, PathLength::one_vertex}; }
+  static PathRules paths(const DirectLight& direct_light) { return {direct_light, PathLength::unlimited}; }
+  /// Whitted's: no directions but the Dirac ones are sampled, so light samples must do.
+  static PathRules whitted(const ByLights& direct_light) {
+    return {direct_light, PathLength::through_diracs};
+  }
+
+  const DirectLight& direct_light() const { return direct_light_; }
+  PathLength length() const { return length_; }
+  /// Null where lights are not sampled.
+  const LightSamples* light_samples() const {
+    if (const auto* by = std::get_if<ByLights>(&direct_light_)) return &by->lights;
+    if (const auto* by = std::get_if<ByBoth>(&direct_light_)) return &by->lights;
+    return nullptr;
+  }
+  /// The same rules with another light sampler; light_samples() must not be null.
+  PathRules with_light_sampler(std::string_view name) const {
+    PathRules changed = *this;
+    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.sampler = name;
+    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.sampler = name;
+    return changed;
+  }
+
+  /// Whether light is scattered at the vertex of this number; else only its emission counts.
+  bool is_scattering(int vertex) const { return vertex == 0 || length_ != PathLength::one_vertex; }
+  bool is_dirac_only() const { return length_ == PathLength::through_diracs; }
+
+  /// Directions from the BSDF that leave a vertex, if only to see which light they meet.
+  int bsdf_samples(int vertex) const {
+    if (!is_scattering(vertex)) return 0;
+    if (const auto* by = std::get_if<ByBsdf>(&direct_light_)) return vertex == 0 ? by->bsdf_samples : 1;
+    if (const auto* by = std::get_if<ByBoth>(&direct_light_)) return vertex == 0 ? by->bsdf_samples : 1;
+    return length_ == PathLength::one_vertex ? 0 : 1;
+  }
+
+  /// The heuristic where light is found by both techniques; else null.
+  const Heuristic* heuristic() const {
+    const auto* by = std::get_if<ByBoth>(&direct_light_);
+    return by ? &by->heuristic : nullptr;
+  }
+  /// Whether weights depend on the densities of both techniques.
+  bool needs_both_pdfs() const { return heuristic() && *heuristic() != Heuristic::average; }
+
+  friend bool operator==(const PathRules&, const PathRules&) = default;
+
+ private:
+  PathRules(const DirectLight& direct_light, PathLength length)
+      : direct_light_(direct_light), length_(length) {}
+  DirectLight direct_light_;
+  PathLength length_;
+};
 
 }  // namespace etendue

@@ -11,22 +11,27 @@
 namespace etendue {
 
 template <class F>
-void run_integrator(const IntegratorSettings& settings, const Scene& scene, SampleBlock& block,
-                    bool is_reordering) {
-  switch (settings.kind) {
-    case IntegratorKind::path:
-      if (settings.rules.bsdf_samples > 1)
-        return direct_light_by_several<F>(scene, block, settings.rules, is_reordering);
-      return path<F>(scene, block, settings.rules, is_reordering);
-    case IntegratorKind::normals:
-      return normals<F>(scene, block);
-    case IntegratorKind::visibility:
-      return visibility<F>(scene, block, settings.visibility);
-    case IntegratorKind::material:
-      return material<F>(scene, block);
-    case IntegratorKind::simple:
-      return simple<F>(scene, block, settings.simple);
+struct RunIntegrator {
+  const Scene& scene;
+  const LightSampler& light_sampler;
+  SampleBlock& block;
+  bool is_reordering;
+
+  void operator()(const PathRules& rules) const {
+    path<F>({scene, light_sampler, rules, is_reordering}, block);
   }
+  void operator()(const ShowNormals&) const { normals<F>(scene, block); }
+  void operator()(const ShowMaterial&) const { material<F>(scene, block); }
+  void operator()(const VisibilityRules& rules) const { visibility<F>(scene, block, rules); }
+  void operator()(const SimpleLight& light) const { simple<F>(scene, block, light); }
+};
+
+/// \param light_sampler over the scene's lights
+/// \param is_reordering aim shadow packets; off only to show that it changes nothing
+template <class F>
+void run_integrator(const IntegratorSettings& settings, const Scene& scene, const LightSampler& light_sampler,
+                    SampleBlock& block, bool is_reordering) {
+  std::visit(RunIntegrator<F>{scene, light_sampler, block, is_reordering}, settings.rules);
 }
 
 }  // namespace etendue

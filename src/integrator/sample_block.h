@@ -2,11 +2,15 @@
 #pragma once
 
 #include "base/lane_vec.h"
+#include "geometry/ray.h"
 #include "integrator/block_counts.h"
+#include "integrator/layer_rule.h"
+#include "light/receiver.h"
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace etendue {
 
@@ -57,6 +61,37 @@ struct HitColumns {
   Column<std::int32_t> geometry, primitive;
 };
 
+/// The ray i, or the packet from i on; likewise below.
+template <class F>
+Ray<F> load_ray(const RayColumns& rays, int i) {
+  return {load_lanes<F>(rays.origin, i), load_lanes<F>(rays.direction, i)};
+}
+template <class F>
+Hit<F> load_hit(const HitColumns& hits, int i) {
+  return {load_lanes<F>(&hits.t[i]),
+          {load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])},
+          load_lanes<F>(hits.ng, i),
+          load_lanes<Int<F>>(&hits.geometry[i]),
+          load_lanes<Int<F>>(&hits.primitive[i])};
+}
+
+struct ReceiverColumns {
+  Vec3Column position, ng, ns;
+  Column<std::int32_t> lit_sides;
+};
+template <class F>
+Receiver<F> load_receiver(const ReceiverColumns& receivers, int i) {
+  return {load_lanes<F>(receivers.position, i), load_lanes<F>(receivers.ng, i),
+          load_lanes<F>(receivers.ns, i), load_lanes<Int<F>>(&receivers.lit_sides[i])};
+}
+template <class F>
+void store_receiver(ReceiverColumns& receivers, int i, const Receiver<F>& receiver) {
+  store_lanes(receivers.position, i, receiver.position);
+  store_lanes(receivers.ng, i, receiver.ng);
+  store_lanes(receivers.ns, i, receiver.ns);
+  store_lanes(&receivers.lit_sides[i], receiver.lit_sides);
+}
+
 /// The paths that are still alive, one a row, as they arrive at a vertex.
 struct PathColumns {
   int count = 0;         ///< Paths.
@@ -70,7 +105,25 @@ struct PathColumns {
   ColorColumn throughput;  ///< Product of f cos / pdf, roulette included.
   Column<float> pdf;       ///< Of the ray's direction, 1/sr; infinity: the camera's, or a Dirac delta's.
   Column<float> eta;       ///< Refractive index here over that at the camera.
-  Vec3Column from;         ///< The vertex where the ray was sampled, m.
+  /// The vertex where the ray was sampled; kept only where weights need it.
+  ReceiverColumns receiver;
+};
+
+struct LayerColumn {
+  LayerRule rule;
+  ColorColumn radiance;
+};
+
+struct SampleBlock;
+
+/// Benchmarks and replays look on. `vertex` is the number of the vertex.
+struct BlockWatcher {
+  /// The shadow rays of one light sample have been cast; of several samples, and of the light sampler's
+  /// passes, which one.
+  std::function<void(const SampleBlock&, int vertex, int number, std::int32_t pass)> on_light_sample;
+  /// The samples of a vertex have been taken; of several BSDF samples at the first vertex, each of which goes
+  /// on to vertices of its own, which one.
+  std::function<void(const SampleBlock&, int vertex, int branch)> on_vertex;
 };
 
 struct SampleBlock {
@@ -81,6 +134,7 @@ struct SampleBlock {
   Column<std::int32_t> pixel_x, pixel_y;
   Column<float> filter_weight;  ///< Set and read only where the pixel filter has negative lobes.
   ColorColumn radiance;
+  std::vector<LayerColumn> layers;  ///< Parts of the radiance; mostly none.
 
   PathColumns path;
   bool is_in_sample_order = true;  ///< Row i of `path` is sample i: no path has been left out yet.
@@ -89,33 +143,16 @@ struct SampleBlock {
   Vec3Column shadow_origin, shadow_direction;
   ColorColumn unshadowed;
   Column<std::int32_t> shadow_is_needed, shadow_is_free;
-  Column<std::int32_t> aim;    ///< light * light_pieces + piece; after aiming, the bin.
+  Column<std::int32_t> shadow_light, shadow_piece;  ///< Which light it samples, and which part of it.
+  Column<std::int32_t> bin;                         ///< Of the shadow ray in the order of casting.
   Column<std::int32_t> order;  ///< Rows of `path`: of shadow rays as they are traced, then -1; of paths kept.
-  int shadow_count = 0;        ///< 0 where no light has been sampled since the last vertex.
+  int shadow_count = 0;
 
   RayColumns next_ray;  ///< Along the direction that the BSDF was sampled for.
 
   BlockCounts counts;
   StageClock clock;
-  /// Called where set, once the samples of a vertex have been taken, with the numbers of the vertex and of
-  /// the BSDF sample (of several, each goes on to a vertex of its own): benchmarks and replays look on.
-  const std::function<void(const SampleBlock&, int vertex, int bsdf_sample)>* on_vertex = nullptr;
+  const BlockWatcher* watcher = nullptr;
 };
-
-/// Adds to the radiance of the samples that the paths i, i + 1 ... belong to.
-template <class F>
-void add_radiance(SampleBlock& block, int i, const Mask<F>& m, const Color<F>& added) {
-  if (block.is_in_sample_order) {
-    store_lanes(block.radiance, i, load_lanes<F>(block.radiance, i) + select(m, added, black<F>()));
-    return;
-  }
-  const Int<F> sample = load_lanes<Int<F>>(&block.path.sample[i]);
-  const auto add = [&](float* channel, const F& value) {
-    scatter<F>(channel, sample, m, gather(channel, sample) + value);
-  };
-  add(block.radiance.r.data(), added.r);
-  add(block.radiance.g.data(), added.g);
-  add(block.radiance.b.data(), added.b);
-}
 
 }  // namespace etendue

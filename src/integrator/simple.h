@@ -17,7 +17,7 @@ template <class F>
 void sample_simple_light(const Scene& scene, SampleBlock& block, const SimpleLight& light) {
   const Vec3<F> light_position{F(light.position.x), F(light.position.y), F(light.position.z)};
   for (int i = 0; i < block.path.padded_count; i += lane_count_v<F>) {
-    const Vertex<F> vertex(scene, block.path.ray, block.path.hit, i);
+    const Vertex<F> vertex(scene, load_ray<F>(block.path.ray, i), load_hit<F>(block.path.hit, i));
     const Vec3<F> to_light = light_position - vertex.position;
     const F inv_distance_sq = F(1) / length_sq(to_light);
     const F cosine = dot(vertex.ns, to_light) * sqrt(inv_distance_sq);
@@ -28,6 +28,7 @@ void sample_simple_light(const Scene& scene, SampleBlock& block, const SimpleLig
     // Not "greater than 0": a NaN must reach the sum, where it is reported.
     store_mask<F>(&block.shadow_is_needed[i], mask_and(vertex.is_surface, mask_not(cosine <= F(0))));
     store_lanes(block.shadow_origin, i, origin);
+    store_lanes(&block.shadow_light[i], Int<F>(-1));
     store_lanes(block.shadow_direction, i, light_position - origin);
   }
   block.clock.finish(Stage::light_samples);
@@ -40,7 +41,7 @@ void simple(const Scene& scene, SampleBlock& block, const SimpleLight& light) {
   closest_hits<F>(scene, block, Coherence::coherent);
   sample_simple_light<F>(scene, block, light);
   keep_shadow_rays_in_order(block);
-  add_unshadowed<F>(scene, block, Coherence::coherent);
+  add_unshadowed<F>(scene, block, 0, Coherence::coherent);
 }
 
 }  // namespace etendue

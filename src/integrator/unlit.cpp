@@ -9,82 +9,83 @@ namespace {
 
 using Type = Parameter::Type;
 
-const Plugin& plugin_named(std::string_view name) {
-  const auto& plugins = unlit_plugins();
-  return *std::find_if(plugins.begin(), plugins.end(), [&](const Plugin& p) { return p.name == name; });
+/// What a name stands for, with the parameters' defaults.
+struct Row {
+  Plugin plugin;
+  IntegratorRules rules;
+};
+
+const std::vector<Row>& table() {
+  static const std::vector<Row> rows{
+      {{"integrator", "normals", "The shading normal's |x|, |y|, |z| as red, green, blue.", {}, {}},
+       ShowNormals{}},
+      {{"integrator",
+        "av",
+        "Average visibility: the share of the hemisphere in which nothing is near.",
+        {{"length", Type::real, "", "m", "Nothing farther counts; without it, everything does"}},
+        {}},
+       VisibilityRules{.is_cosine_weighted = false, .background = 1}},
+      {{"integrator", "ao", "Ambient occlusion: as av, cosine-weighted, at any distance.", {}, {}},
+       VisibilityRules{.is_cosine_weighted = true, .background = 0}},
+      {{"integrator", "material", "The BSDF's value between the camera and the shading normal.", {}, {}},
+       ShowMaterial{}},
+      {{"integrator",
+        "simple",
+        "White surfaces under one point light of its own.",
+        {{"position", Type::point, "", "m", "Where the light is", true},
+         {"energy", Type::color, "", "W", "Its power", true}},
+        {}},
+       SimpleLight{}}};
+  return rows;
 }
 
-/// With the parameters' defaults.
-IntegratorSettings defaults_of(const Plugin& plugin) {
-  IntegratorSettings settings;
-  settings.name = plugin.name;
-  if (plugin.name == "normals") settings.kind = IntegratorKind::normals;
-  if (plugin.name == "material") settings.kind = IntegratorKind::material;
-  if (plugin.name == "simple") settings.kind = IntegratorKind::simple;
-  if (plugin.name == "av") {
-    settings.kind = IntegratorKind::visibility;
-    settings.visibility = {.is_cosine_weighted = false, .background = 1};
-  }
-  if (plugin.name == "ao") {
-    settings.kind = IntegratorKind::visibility;
-    settings.visibility = {.is_cosine_weighted = true, .background = 0};
-  }
-  return settings;
+const Row* find(std::string_view name) {
+  const auto row = std::find_if(table().begin(), table().end(),
+                                [&](const Row& candidate) { return candidate.plugin.name == name; });
+  return row == table().end() ? nullptr : &*row;
 }
 
 }  // namespace
 
 const std::vector<Plugin>& unlit_plugins() {
-  static const std::vector<Plugin> plugins{
-      {"integrator", "normals", "The shading normal's |x|, |y|, |z| as red, green, blue.", {}, {}},
-      {"integrator",
-       "av",
-       "Average visibility: the share of the hemisphere in which nothing is near.",
-       {{"length", Type::real, "", "m", "Nothing farther counts; without it, everything does"}},
-       {}},
-      {"integrator", "ao", "Ambient occlusion: as av, cosine-weighted, at any distance.", {}, {}},
-      {"integrator", "material", "The BSDF's value between the camera and the shading normal.", {}, {}},
-      {"integrator",
-       "simple",
-       "White surfaces under one point light of its own.",
-       {{"position", Type::point, "", "m", "Where the light is", true},
-        {"energy", Type::color, "", "W", "Its power", true}},
-       {}}};
+  static const std::vector<Plugin> plugins = [] {
+    std::vector<Plugin> made;
+    for (const Row& row : table()) made.push_back(row.plugin);
+    return made;
+  }();
   return plugins;
 }
 
-bool is_unlit(std::string_view name) {
-  const auto& plugins = unlit_plugins();
-  return std::any_of(plugins.begin(), plugins.end(), [&](const Plugin& p) { return p.name == name; });
-}
+bool is_unlit(std::string_view name) { return find(name) != nullptr; }
 
 IntegratorSettings make_unlit(const Object& description, std::vector<UnreadKey>& unread) {
-  const Plugin& plugin = plugin_named(description.type);
-  const Parameters parameters(description, plugin, unread);
-  IntegratorSettings settings = defaults_of(plugin);
-  if (plugin.name == "av" && parameters.has("length")) {
+  const Row& row = *find(description.type);
+  const Parameters parameters(description, row.plugin, unread);
+  IntegratorSettings settings{row.plugin.name, row.rules};
+  if (auto* visibility = std::get_if<VisibilityRules>(&settings.rules);
+      visibility && row.plugin.name == "av" && parameters.has("length")) {
     const double length = parameters.real("length");
     if (!(length > 0))
       throw InputError(parameters.location("length"),
                        fmt::format("'length' is {}; it must be positive", length),
                        "give the distance, in metres, up to which things hide the sky");
-    settings.visibility.length = float(length);
+    visibility->length = float(length);
   }
-  if (plugin.name == "simple") {
+  if (auto* simple = std::get_if<SimpleLight>(&settings.rules)) {
     const Vec3<double> position = parameters.point("position");
-    settings.simple = {{float(position.x), float(position.y), float(position.z)},
-                       nonnegative_color(parameters, "energy")};
+    *simple = {{float(position.x), float(position.y), float(position.z)},
+               nonnegative_color(parameters, "energy")};
   }
   return settings;
 }
 
 IntegratorSettings unlit_from_name(std::string_view name) {
-  const Plugin& plugin = plugin_named(name);
-  for (const Parameter& parameter : plugin.parameters)
+  const Row& row = *find(name);
+  for (const Parameter& parameter : row.plugin.parameters)
     if (parameter.is_required)
       throw InputError(fmt::format("--integrator {}: it needs '{}', which only a scene file can state", name,
                                    parameter.name));
-  return defaults_of(plugin);
+  return {row.plugin.name, row.rules};
 }
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// What the integrators that need no lights of the scene are told: visibility and simple.
+// What the integrators that need no lights of the scene are told.
 #pragma once
 
 #include "base/color.h"
@@ -7,6 +7,9 @@
 #include <limits>
 
 namespace etendue {
+
+struct ShowNormals {};
+struct ShowMaterial {};
 
 struct VisibilityRules {
   bool is_cosine_weighted = false;                        ///< Otherwise every direction counts alike.

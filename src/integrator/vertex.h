@@ -3,8 +3,9 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
+#include "geometry/ray.h"
 #include "geometry/surface_uv.h"
-#include "integrator/sample_block.h"
+#include "light/receiver.h"
 #include "scene/scene.h"
 
 namespace etendue {
@@ -31,23 +32,21 @@ struct HitNormals {
   Vec3<F> ng;  ///< Unit.
   Vec3<F> ns;  ///< Unit; ng where the shape has no vertex normals, or those around the place cancel.
 
-  HitNormals(const Scene& scene, const HitColumns& hits, int i, const Mask<F>& is_hit)
-      : ng(normalize(load_lanes<F>(hits.ng, i))), ns(ng) {
+  HitNormals(const Scene& scene, const Hit<F>& hit, const Mask<F>& is_hit) : ng(normalize(hit.ng)), ns(ng) {
     if (!scene.geometry.has_any_normals) return;
-    const Int<F> geometry = select(is_hit, load_lanes<Int<F>>(&hits.geometry[i]), Int<F>(0));
+    const Int<F> geometry = select(is_hit, hit.geometry, Int<F>(0));
     const Mask<F> is_smooth =
         mask_and(is_hit, equal(gather(scene.geometry.has_normals.data(), geometry), Int<F>(1)));
     if (!any(is_smooth)) return;
-    const Vec2<F> barycentric{load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])};
-    const Vec3<F> smooth = interpolate_normal<F>(
-        scene.geometry, geometry, load_lanes<Int<F>>(&hits.primitive[i]), barycentric, is_smooth);
+    const Vec3<F> smooth =
+        interpolate_normal<F>(scene.geometry, geometry, hit.primitive, hit.barycentric, is_smooth);
     const F size_sq = dot(smooth, smooth);
     constexpr float cancelled = 1e-12f;
     ns = select(mask_and(is_smooth, mask_not(size_sq <= F(cancelled))), smooth * (F(1) / sqrt(size_sq)), ng);
   }
 };
 
-/// What the rays i, i + 1 ... have come to.
+/// What a packet of rays has come to.
 template <class F>
 struct Vertex {
   Mask<F> is_there;    ///< Elsewhere the ray left the scene.
@@ -58,31 +57,35 @@ struct Vertex {
   F clearance;
   Int<F> material;  ///< Any where no surface is.
 
-  Vertex(const Scene& scene, const RayColumns& rays, const HitColumns& hits, int i) {
-    const Int<F> geometry = load_lanes<Int<F>>(&hits.geometry[i]);
-    is_surface = less(Int<F>(-1), geometry);
+  Vertex(const Scene& scene, const Ray<F>& ray, const Hit<F>& hit) {
+    is_surface = less(Int<F>(-1), hit.geometry);
     is_there = is_surface;
-    const HitNormals<F> normals(scene, hits, i, is_surface);
-    const F t = load_lanes<F>(&hits.t[i]);
-    const Vec3<F> direction = load_lanes<F>(rays.direction, i);
-    position = load_lanes<F>(rays.origin, i) + direction * t;
+    const HitNormals<F> normals(scene, hit, is_surface);
+    position = ray.origin + ray.direction * hit.t;
     ng = normals.ng;
     ns = normals.ns;
-    wo = -direction;
-    clearance = ray_clearance(position, t);
-    const Int<F> safe = select(is_surface, geometry, Int<F>(0));
+    wo = -ray.direction;
+    clearance = ray_clearance(position, hit.t);
+    const Int<F> safe = select(is_surface, hit.geometry, Int<F>(0));
     material = gather(scene.geometry.material.data(), safe);
     uv = {F(0), F(0)};
-    if (scene.has_textures)
-      uv = surface_uv<F>(scene.geometry, safe, load_lanes<Int<F>>(&hits.primitive[i]),
-                         {load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])}, ng, is_surface);
+    if (scene.materials.have_textures())
+      uv = surface_uv<F>(scene.geometry, safe, hit.primitive, hit.barycentric, ng, is_surface);
     if (scene.medium) {
-      const Mask<F> is_in_medium = equal(geometry, Int<F>(in_medium));
-      is_there = mask_not(equal(geometry, Int<F>(-1)));
+      const Mask<F> is_in_medium = equal(hit.geometry, Int<F>(in_medium));
+      is_there = mask_not(equal(hit.geometry, Int<F>(-1)));
       ng = select(is_in_medium, wo, ng);
       ns = select(is_in_medium, wo, ns);
       clearance = select(is_in_medium, F(0), clearance);
     }
+  }
+
+  /// What lights see of the vertex.
+  Receiver<F> receiver(const Scene& scene) const {
+    const Int<F> sides = scene.materials.lit_sides<F>(material), both(lit_side::front | lit_side::back);
+    const Mask<F> is_seen = mask_or(dot(wo, ns) > F(0), equal(sides, both));
+    const Int<F> seen_sides = select(is_seen, sides, Int<F>(lit_side::none));
+    return {position, ng, ns, select(is_surface, seen_sides, Int<F>(lit_side::medium))};
   }
 
   /// Whether a direction lies on the side of the surface itself that it has relative to the shading normal,

@@ -17,7 +17,7 @@ namespace etendue {
 template <class F>
 void sample_hemisphere(const Scene& scene, SampleBlock& block, const VisibilityRules& rules) {
   for (int i = 0; i < block.path.padded_count; i += lane_count_v<F>) {
-    const Vertex<F> vertex(scene, block.path.ray, block.path.hit, i);
+    const Vertex<F> vertex(scene, load_ray<F>(block.path.ray, i), load_hit<F>(block.path.hit, i));
     const Vec2<F> u_bsdf = to_unit_floats<F>(sample_bits<F>(scene, block.path, i, dimension::bsdf));
     const Vec3<F> wi_local =
         rules.is_cosine_weighted ? square_to_cosine_hemisphere(u_bsdf) : square_to_uniform_cone(u_bsdf, F(1));
@@ -48,7 +48,7 @@ void visibility(const Scene& scene, SampleBlock& block, const VisibilityRules& r
   closest_hits<F>(scene, block, Coherence::coherent);
   add_to_misses<F>(block, rules.background);
   sample_hemisphere<F>(scene, block, rules);
-  follow_paths<F>(block);
+  follow_paths<F>(block, false);
   std::fill_n(block.path.ray.t_far.begin(), block.path.padded_count, rules.length);
   closest_hits<F>(scene, block, Coherence::incoherent);
   add_to_misses<F>(block, 1);

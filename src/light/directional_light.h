@@ -3,7 +3,7 @@
 
 #include "base/color.h"
 #include "base/lane_vec.h"
-#include "light/light_sample.h"
+#include "light/light_table.h"
 #include "scenefile/parameters.h"
 
 #include <cstdint>
@@ -20,13 +20,17 @@ class DirectionalLights {
     return std::int32_t(directions_.size()) - 1;
   }
 
+  static constexpr LightPlace place = LightPlace::nowhere;
+
   template <class F>
-  LightSample<F> sample(const Sphere& scene_bounds, const Int<F>& row, const Vec3<F>& reference,
-                        const Vec2<UInt<F>>& /*u*/, const Mask<F>& m) const {
-    const Vec3<F> wi = -gather_vec3<F>(&directions_[0].x, row * Int<F>(3));
-    return light_sample_towards<F>(wi, beyond_scene(scene_bounds, reference, wi), {F(1), F(1), F(1)},
-                                   dirac_pdf<F>(), m);
+  LightSample<F> sample(const LightRequest<F>& request) const {
+    const Vec3<F> wi = -gather_vec3<F>(&directions_[0].x, request.row * Int<F>(3));
+    return light_sample_towards<F>(wi, beyond_scene(request, wi), {F(1), F(1), F(1)}, dirac_pdf<F>(),
+                                   request.lanes, request);
   }
+
+  double power(std::int32_t /*row*/, const Sphere& scene_bounds) const { return cross_section(scene_bounds); }
+  std::optional<LightBounds> bounds(std::int32_t /*row*/) const { return std::nullopt; }
 
  private:
   std::vector<Vec3f> directions_;

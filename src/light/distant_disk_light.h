@@ -6,7 +6,7 @@
 #include "base/lane_vec.h"
 #include "base/lookup_table.h"
 #include "base/warp.h"
-#include "light/light_sample.h"
+#include "light/light_table.h"
 #include "scenefile/parameters.h"
 
 #include <cstdint>
@@ -25,30 +25,36 @@ class DistantDiskLights {
  public:
   std::int32_t add(const DistantDisk& disk);
 
+  static constexpr LightPlace place = LightPlace::infinity;
+
   template <class F>
-  LightSample<F> sample(const Sphere& scene_bounds, const Int<F>& row, const Vec3<F>& reference,
-                        const Vec2<UInt<F>>& u, const Mask<F>& m) const {
-    const Int<F> at = row * Int<F>(3);
+  LightSample<F> sample(const LightRequest<F>& request) const {
+    const Int<F> at = request.row * Int<F>(3);
     const Vec3<F> axis = gather_vec3<F>(axes_.data(), at);
-    const F one_minus_cos_max = one_minus_cos_max_.at(row);
-    const Vec2<F> u_cone{to_unit_float(u.x), to_unit_float(u.y)};
+    const F one_minus_cos_max = one_minus_cos_max_.at(request.row);
+    const Vec2<F> u_cone{to_unit_float(request.u.x), to_unit_float(request.u.y)};
     const Vec3<F> wi = Frame<F>(axis).world_from_local(square_to_uniform_cone(u_cone, one_minus_cos_max));
     const F pdf = uniform_cone_pdf_solid_angle(one_minus_cos_max), arriving = F(1) / pdf;
     const Int<F> piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));
-    return light_sample_towards<F>(wi, beyond_scene(scene_bounds, reference, wi),
-                                   {arriving, arriving, arriving}, pdf, m, piece);
+    return light_sample_towards<F>(wi, beyond_scene(request, wi), {arriving, arriving, arriving}, pdf,
+                                   request.lanes, request, piece);
   }
+
+  double power(std::int32_t row, const Sphere& scene_bounds) const {
+    return 2 * double(pi) * one_minus_cos_max_[row] * cross_section(scene_bounds);
+  }
+  std::optional<LightBounds> bounds(std::int32_t /*row*/) const { return std::nullopt; }
 
   /// Per unit of strength: 1 within the disk, else 0.
   template <class F>
-  Color<F> radiance(std::int32_t row, const Vec3<F>& direction) const {
+  Color<F> radiance(std::int32_t row, const Vec3<F>& direction, const Mask<F>& /*lanes*/) const {
     const F one = select(is_within<F>(row, direction), F(1), F(0));
     return {one, one, one};
   }
 
   /// The density (1/sr) with which `sample` gives `direction`.
   template <class F>
-  F pdf_solid_angle(std::int32_t row, const Vec3<F>& direction) const {
+  F pdf_solid_angle(std::int32_t row, const Vec3<F>& direction, const Mask<F>& /*lanes*/) const {
     return select(is_within<F>(row, direction), uniform_cone_pdf_solid_angle(F(one_minus_cos_max_[row])),
                   F(0));
   }

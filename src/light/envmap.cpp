@@ -39,6 +39,7 @@ Envmap::Envmap(std::int32_t width, std::int32_t height, std::vector<float> rgb)
     }
     append_cumulative_shares(cells, column_shares_);
     rows.push_back(sum);
+    mean_luminance_ += sum / (2 * width);
   }
   append_cumulative_shares(rows, row_shares_);
 }

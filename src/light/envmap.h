@@ -46,6 +46,8 @@ class Envmap {
   template <class F>
   Sample<F> sample(const Vec2<UInt<F>>& u) const;
 
+  double mean_luminance() const { return mean_luminance_; }  ///< Over all directions.
+
   std::int32_t width() const { return width_; }
   std::int32_t height() const { return height_; }
 
@@ -75,6 +77,7 @@ class Envmap {
   std::vector<float> rgb_;
   std::vector<float> sin_theta_;  ///< Of each row of texels.
   float cap_one_minus_cos_;       ///< At the rim of a cap.
+  double mean_luminance_ = 0;
   std::vector<std::int32_t> row_shares_, column_shares_;
 };
 

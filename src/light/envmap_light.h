@@ -3,7 +3,7 @@
 
 #include "base/transform.h"
 #include "light/envmap.h"
-#include "light/light_sample.h"
+#include "light/light_table.h"
 #include "scenefile/parameters.h"
 
 #include <array>
@@ -19,25 +19,31 @@ class EnvmapLights {
   /// \param world_from_map a rotation, perhaps with a mirror image
   std::int32_t add(Envmap map, const Transform& world_from_map);
 
+  static constexpr LightPlace place = LightPlace::infinity;
+
   /// Maps are few: the lanes of each are sampled in turn.
   template <class F>
-  LightSample<F> sample(const Sphere& scene_bounds, const Int<F>& row, const Vec3<F>& reference,
-                        const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+  LightSample<F> sample(const LightRequest<F>& request) const {
     LightSample<F> result = no_light_sample<F>();
-    for_each_unique<F>(row, m, [&](std::int32_t which, const Mask<F>& lanes) {
+    for_each_unique<F>(request.row, request.lanes, [&](std::int32_t which, const Mask<F>& lanes) {
       const Placed& placed = maps_[std::size_t(which)];
-      const Envmap::Sample<F> sample = placed.map.template sample<F>(u);
+      const Envmap::Sample<F> sample = placed.map.template sample<F>(request.u);
       const F pdf = sample.value.pdf_solid_angle;
       const Mask<F> is_there = mask_and(lanes, pdf > F(0));
       const Vec3<F> wi = placed.template world_from_map<F>(sample.direction);
       const F inv_pdf = F(1) / select(is_there, pdf, F(1));
       result = select(lanes,
-                      light_sample_towards<F>(wi, beyond_scene(scene_bounds, reference, wi),
-                                              sample.value.radiance * inv_pdf, pdf, is_there, sample.piece),
+                      light_sample_towards<F>(wi, beyond_scene(request, wi), sample.value.radiance * inv_pdf,
+                                              pdf, is_there, request, sample.piece),
                       result);
     });
     return result;
   }
+
+  double power(std::int32_t row, const Sphere& scene_bounds) const {
+    return maps_[std::size_t(row)].map.mean_luminance() * 4 * double(pi) * cross_section(scene_bounds);
+  }
+  std::optional<LightBounds> bounds(std::int32_t /*row*/) const { return std::nullopt; }
 
   /// Per unit of strength, W/(m^2 sr).
   template <class F>

@@ -1,19 +1,30 @@
 #include "light/light.h"
 
-#include <utility>
-
 namespace etendue {
 
-std::int32_t Lights::add(const Colorf& strength, std::string name, LightKind kind, std::int32_t row) {
-  if (is_area_light(kind)) ++area_count_;
-  if (is_infinite_light(kind)) infinite_.push_back(count());
-  kind_.push_back(std::int32_t(kind));
+std::int32_t Lights::note(const Colorf& strength, std::string name, std::int32_t kind, LightPlace place,
+                          std::int32_t row) {
+  if (place == LightPlace::surface) ++surface_count_;
+  if (place == LightPlace::infinity) infinite_.push_back(count());
+  kind_.push_back(kind);
   row_.push_back(row);
   red_.push_back(strength.r);
   green_.push_back(strength.g);
   blue_.push_back(strength.b);
   names_.push_back(std::move(name));
   return count() - 1;
+}
+
+double Lights::power(std::int32_t light) const {
+  double of_unit = 0;
+  with_table(kind_[light], [&](const auto& table) { of_unit = table.power(row_[light], scene_bounds_); });
+  return of_unit * luminance(Color<double>{red_[light], green_[light], blue_[light]});
+}
+
+std::optional<LightBounds> Lights::bounds(std::int32_t light) const {
+  std::optional<LightBounds> bounds;
+  with_table(kind_[light], [&](const auto& table) { bounds = table.bounds(row_[light]); });
+  return bounds;
 }
 
 }  // namespace etendue

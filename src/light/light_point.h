@@ -29,7 +29,7 @@ LightPoint<F> select(const Mask<F>& m, const LightPoint<F>& a, const LightPoint<
           select(m, a.piece, b.piece)};
 }
 
-/// Whether the front of a light at `position`, with geometric normal `ng`, faces a receiver at `reference`.
+/// Whether the front of a light at `position`, with geometric normal `ng`, faces the place `reference`.
 /// Not one that lies in the light's own plane within rounding: its cosine would be an error over a small
 /// number.
 template <class F>

@@ -6,6 +6,7 @@
 #include "light/disk_light.h"
 #include "light/distant_disk_light.h"
 #include "light/envmap_light.h"
+#include "light/light_table.h"
 #include "light/mesh_light.h"
 #include "light/point_light.h"
 #include "light/rectangle_light.h"
@@ -13,73 +14,54 @@
 #include "light/spot_light.h"
 
 #include <cstdint>
+#include <tuple>
+#include <utility>
 
 namespace etendue {
 
-enum class LightKind : std::int32_t {
-  mesh,
-  rectangle,
-  sphere,
-  disk,
-  point,
-  spot,
-  directional,
-  distant_disk,
-  envmap
-};
+/// All kinds.
+using LightKinds = std::tuple<MeshLights, RectangleLights, SphereLights, DiskLights, PointLights, SpotLights,
+                              DirectionalLights, DistantDiskLights, EnvmapLights>;
+inline constexpr std::size_t light_kind_count = std::tuple_size_v<LightKinds>;
 
-constexpr bool is_area_light(LightKind kind) { return kind <= LightKind::disk; }
-/// Met by rays that leave the scene.
-constexpr bool is_infinite_light(LightKind kind) { return kind >= LightKind::distant_disk; }
-
-/// Lights on surfaces have `sample_position` and `pdf_area`; the others have `sample`.
-template <class Table>
-concept AreaLightTable =
-    requires(const Table& table, const Vec3<float>& v) { table.template pdf_area<float>(0, v, v, v); };
-
+/// Light tables by their number among the kinds.
 class LightTables {
  public:
-  MeshLights meshes;
-  RectangleLights rectangles;
-  SphereLights spheres;
-  DiskLights disks;
-  PointLights points;
-  SpotLights spots;
-  DirectionalLights directionals;
-  DistantDiskLights distant_disks;
-  EnvmapLights envmaps;
+  template <class Table>
+  const Table& table() const {
+    return std::get<Table>(tables_);
+  }
 
  protected:
+  template <class Table>
+  static constexpr std::int32_t kind_of() {
+    return []<std::size_t... k>(std::index_sequence<k...>) {
+      return ((std::is_same_v<Table, std::tuple_element_t<k, LightKinds>> ? std::int32_t(k) : 0) + ...);
+    }(std::make_index_sequence<light_kind_count>{});
+  }
+
+  /// f(table) for the table of this kind.
+  template <class Function>
+  void with_table(std::int32_t kind, Function&& f) const {
+    [&]<std::size_t... k>(std::index_sequence<k...>) {
+      ((kind == std::int32_t(k) ? f(std::get<k>(tables_)) : void()), ...);
+    }(std::make_index_sequence<light_kind_count>{});
+  }
+
   /// f(table, row, lanes) for each kind among the lights in the lanes of `m`; rows are valid in all lanes.
   template <class F, class Function>
   void for_each_kind(const Int<F>& light, const Mask<F>& m, Function&& f) const {
     const Int<F> safe = select(m, light, Int<F>(0));
     const Int<F> kinds = kind_.at(safe), rows = row_.at(safe);
-    for_each_unique<F>(kinds, m, [&](std::int32_t which, const Mask<F>& lanes) {
-      const Int<F> safe_row = select(lanes, rows, Int<F>(0));
-      switch (LightKind(which)) {
-        case LightKind::mesh:
-          return f(meshes, safe_row, lanes);
-        case LightKind::rectangle:
-          return f(rectangles, safe_row, lanes);
-        case LightKind::sphere:
-          return f(spheres, safe_row, lanes);
-        case LightKind::disk:
-          return f(disks, safe_row, lanes);
-        case LightKind::point:
-          return f(points, safe_row, lanes);
-        case LightKind::spot:
-          return f(spots, safe_row, lanes);
-        case LightKind::directional:
-          return f(directionals, safe_row, lanes);
-        case LightKind::distant_disk:
-          return f(distant_disks, safe_row, lanes);
-        case LightKind::envmap:
-          return f(envmaps, safe_row, lanes);
-      }
+    for_each_unique<F>(kinds, m, [&](std::int32_t kind, const Mask<F>& lanes) {
+      with_table(kind, [&](const auto& table) {
+        static_assert(LightTable<std::remove_cvref_t<decltype(table)>>, "see light/light_table.h");
+        f(table, select(lanes, rows, Int<F>(0)), lanes);
+      });
     });
   }
 
+  LightKinds tables_;
   LookupTable<std::int32_t> kind_, row_;  ///< Of each light, by its id: which table, and the row in it.
 };
 

@@ -15,6 +15,19 @@ bool has_thick_box(const Vec3f& edge_1, const Vec3f& edge_2) {
          (edge_1.z != 0 || edge_2.z != 0);
 }
 
+/// Of triangles with these vectors across them, whose lengths are twice their areas.
+LightBounds bounds_of(const Box& box, const std::vector<Vec3<double>>& across) {
+  Vec3<double> sum{0, 0, 0};
+  for (const Vec3<double>& a : across) sum = sum + a;
+  const double size = length(sum);
+  if (!(size > 0)) return {box, {0, 0, 1}, -1, 0};
+  const Vec3<double> axis = sum * (1 / size);
+  double cos_normals = 1;
+  for (const Vec3<double>& a : across) cos_normals = std::min(cos_normals, dot(a, axis) / length(a));
+  // Rounded to a wider cone.
+  return {box, {float(axis.x), float(axis.y), float(axis.z)}, std::max(float(cos_normals) - 1e-6f, -1.0f), 0};
+}
+
 /// The cell of a 4x4 grid over the two longest sides of the mesh's box that holds a triangle's centre, in
 /// Morton order: where a light has many triangles, these are its pieces.
 class PieceGrid {
@@ -54,6 +67,8 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   first_triangle_.push_back(std::int32_t(alias_.size()));
   triangle_count_.push_back(std::int32_t(count));
   std::vector<double> areas;
+  std::vector<Vec3<double>> across;
+  Box box;
   std::size_t thick_boxes = 0;
   std::vector<Vec3f> centers;
   double total_area = 0;
@@ -64,7 +79,9 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
     const auto wide = [](const Vec3f& v) { return Vec3<double>{v.x, v.y, v.z}; };
     thick_boxes += has_thick_box(edge_1, edge_2);
     centers.push_back(origin + (edge_1 + edge_2) * (1.0f / 3));
-    areas.push_back(0.5 * length(cross(wide(edge_1), wide(edge_2))));
+    across.push_back(cross(wide(edge_1), wide(edge_2)));
+    for (const int k : {0, 1, 2}) box.include(corner(k));
+    areas.push_back(0.5 * length(across.back()));
     total_area += areas.back();
   }
   constexpr std::size_t few_a_piece = 2;
@@ -80,6 +97,7 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   alias_threshold_.insert(alias_threshold_.end(), table.threshold.begin(), table.threshold.end());
   alias_.insert(alias_.end(), table.alias.begin(), table.alias.end());
   pdf_area_.push_back(float(1 / total_area));
+  bounds_.push_back(bounds_of(box, across));
   return pdf_area_.size() - 1;
 }
 

@@ -3,7 +3,8 @@
 
 #include "base/color.h"
 #include "base/lane_vec.h"
-#include "light/light_sample.h"
+#include "base/warp.h"
+#include "light/light_table.h"
 #include "scenefile/parameters.h"
 
 #include <cstdint>
@@ -19,14 +20,22 @@ class PointLights {
     return std::int32_t(positions_.size()) - 1;
   }
 
+  static constexpr LightPlace place = LightPlace::nowhere;
+
   template <class F>
-  LightSample<F> sample(const Sphere& /*scene_bounds*/, const Int<F>& row, const Vec3<F>& reference,
-                        const Vec2<UInt<F>>& /*u*/, const Mask<F>& m) const {
-    const Vec3<F> position = gather_vec3<F>(&positions_[0].x, row * Int<F>(3));
-    const Vec3<F> to_light = position - reference;
+  LightSample<F> sample(const LightRequest<F>& request) const {
+    const Vec3<F> position = gather_vec3<F>(&positions_[0].x, request.row * Int<F>(3));
+    const Vec3<F> to_light = position - request.receiver.position;
     const F inv_distance_sq = F(1) / length_sq(to_light);
     return light_sample_towards<F>(to_light * sqrt(inv_distance_sq), position,
-                                   {inv_distance_sq, inv_distance_sq, inv_distance_sq}, dirac_pdf<F>(), m);
+                                   {inv_distance_sq, inv_distance_sq, inv_distance_sq}, dirac_pdf<F>(),
+                                   request.lanes, request);
+  }
+
+  double power(std::int32_t /*row*/, const Sphere& /*scene_bounds*/) const { return 4 * double(pi); }
+  std::optional<LightBounds> bounds(std::int32_t row) const {
+    const Vec3f& position = positions_[std::size_t(row)];
+    return LightBounds{{position, position}, {0, 0, 1}, -1, 0};
   }
 
  private:

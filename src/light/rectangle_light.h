@@ -4,8 +4,9 @@
 #include "base/lane_vec.h"
 #include "base/lookup_table.h"
 #include "base/simd_math.h"
+#include "base/warp.h"
 #include "geometry/geometry.h"
-#include "light/light_point.h"
+#include "light/light_table.h"
 
 #include <cstdint>
 #include <vector>
@@ -23,21 +24,37 @@ class RectangleLights {
     return pdf_area_.size() - 1;
   }
 
+  static constexpr LightPlace place = LightPlace::surface;
+
   template <class F>
-  LightPoint<F> sample_position(const Int<F>& row, const Vec3<F>& /*reference*/,
-                                const Vec2<UInt<F>>& u) const {
+  LightSample<F> sample(const LightRequest<F>& request) const {
+    return light_sample_at(sample_position<F>(request.row, request.u), request);
+  }
+
+  template <class F>
+  F pdf_solid_angle(const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
+                    const LightHit<F>& hit) const {
+    return pdf_solid_angle_at(hit, receiver, pmf * pdf_area_.at(row));
+  }
+
+  double power(std::int32_t row, const Sphere& /*scene_bounds*/) const { return pi / pdf_area_[row]; }
+  std::optional<LightBounds> bounds(std::int32_t row) const {
+    const float* field = fields_.data() + 12 * std::size_t(row);
+    const auto vec = [&](int column) { return Vec3f{field[column], field[column + 1], field[column + 2]}; };
+    Box box;
+    for (const Vec3f& corner : {vec(0), vec(0) + vec(3), vec(0) + vec(6), vec(0) + vec(3) + vec(6)})
+      box.include(corner);
+    return LightBounds{box, vec(9), 1, 0};
+  }
+
+  template <class F>
+  LightPoint<F> sample_position(const Int<F>& row, const Vec2<UInt<F>>& u) const {
     const Int<F> at = row * Int<F>(12);
     const auto vec = [&](int column) { return gather_vec3<F>(fields_.data() + column, at); };
     const F x = to_unit_float(u.x), y = to_unit_float(u.y);
     const Vec3<F> ng = vec(9);
     const Int<F> piece = to_int(x * F(4)) * Int<F>(4) + to_int(y * F(4));
     return {vec(0) + vec(3) * x + vec(6) * y, ng, pdf_area_.at(row), piece};
-  }
-
-  template <class F>
-  F pdf_area(const Int<F>& row, const Vec3<F>& /*reference*/, const Vec3<F>& /*position*/,
-             const Vec3<F>& /*ng*/) const {
-    return pdf_area_.at(row);
   }
 
  private:

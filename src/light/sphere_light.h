@@ -5,8 +5,8 @@
 #include "base/lane_vec.h"
 #include "base/simd_math.h"
 #include "base/warp.h"
-#include "geometry/geometry.h"
-#include "light/light_point.h"
+#include "geometry/bounds.h"
+#include "light/light_table.h"
 
 #include <cstdint>
 #include <vector>
@@ -19,6 +19,28 @@ class SphereLights {
   std::int32_t add(const Sphere& sphere) {
     fields_.insert(fields_.end(), {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius});
     return std::int32_t(fields_.size() / 4) - 1;
+  }
+
+  static constexpr LightPlace place = LightPlace::surface;
+
+  template <class F>
+  LightSample<F> sample(const LightRequest<F>& request) const {
+    return light_sample_at(sample_position<F>(request.row, request.receiver.position, request.u), request);
+  }
+
+  template <class F>
+  F pdf_solid_angle(const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
+                    const LightHit<F>& hit) const {
+    return pdf_solid_angle_at(hit, receiver, pmf * pdf_area<F>(row, receiver.position, hit.position, hit.ng));
+  }
+
+  double power(std::int32_t row, const Sphere& /*scene_bounds*/) const {
+    const double radius = fields_[4 * std::size_t(row) + 3];
+    return 4 * double(pi) * double(pi) * radius * radius;
+  }
+  std::optional<LightBounds> bounds(std::int32_t row) const {
+    const float* field = fields_.data() + 4 * std::size_t(row);
+    return LightBounds{box_of(Sphere{{field[0], field[1], field[2]}, field[3]}), {0, 0, 1}, -1, 0};
   }
 
   template <class F>
@@ -54,6 +76,7 @@ class SphereLights {
     return point;
   }
 
+  /// The density per area (1/m^2) of sample_position.
   template <class F>
   F pdf_area(const Int<F>& row, const Vec3<F>& reference, const Vec3<F>& position, const Vec3<F>& ng) const {
     const Cone<F> cone(*this, row, reference);

@@ -2,6 +2,7 @@
 
 #include "light/light_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -32,6 +33,20 @@ std::int32_t SpotLights::add(const SpotLight& spot) {
   for (const Vec3f& v : {spot.position, spot.axis}) fields_.insert(fields_.end(), {v.x, v.y, v.z});
   fields_.insert(fields_.end(), {spot.cutoff / width, 1 / width});
   return std::int32_t(fields_.size() / columns) - 1;
+}
+
+double SpotLights::power(std::int32_t row, const Sphere& /*scene_bounds*/) const {
+  const float* field = fields_.data() + columns * std::size_t(row);
+  const double width = 1 / double(field[7]), cutoff = double(field[6]) * width;
+  return spot_power(cutoff - width, cutoff);
+}
+
+std::optional<LightBounds> SpotLights::bounds(std::int32_t row) const {
+  const float* field = fields_.data() + columns * std::size_t(row);
+  const Vec3f position{field[0], field[1], field[2]}, axis{field[3], field[4], field[5]};
+  const double cutoff = double(field[6]) / double(field[7]);
+  // Rounded to a wider cone.
+  return LightBounds{{position, position}, axis, 1, std::max(float(std::cos(cutoff)) - 1e-5f, -1.0f)};
 }
 
 double spot_power(double beam, double cutoff) {

@@ -3,7 +3,7 @@
 
 #include "base/color.h"
 #include "base/lane_vec.h"
-#include "light/light_sample.h"
+#include "light/light_table.h"
 #include "scenefile/parameters.h"
 
 #include <cstdint>
@@ -26,14 +26,15 @@ class SpotLights {
  public:
   std::int32_t add(const SpotLight& spot);
 
+  static constexpr LightPlace place = LightPlace::nowhere;
+
   template <class F>
-  LightSample<F> sample(const Sphere& /*scene_bounds*/, const Int<F>& row, const Vec3<F>& reference,
-                        const Vec2<UInt<F>>& /*u*/, const Mask<F>& m) const {
-    const Int<F> at = row * Int<F>(columns);
+  LightSample<F> sample(const LightRequest<F>& request) const {
+    const Int<F> at = request.row * Int<F>(columns);
     const auto field = [&](int column) { return gather(fields_.data() + column, at); };
     const Vec3<F> position = gather_vec3<F>(fields_.data(), at),
                   axis = gather_vec3<F>(fields_.data() + 3, at);
-    const Vec3<F> to_light = position - reference;
+    const Vec3<F> to_light = position - request.receiver.position;
     const F inv_distance_sq = F(1) / length_sq(to_light);
     const Vec3<F> wi = to_light * sqrt(inv_distance_sq);
     // From the sine too: the cosine alone does not know small angles.
@@ -41,8 +42,11 @@ class SpotLights {
     const F falloff = min(max(field(6) - angle * field(7), F(0)), F(1));
     const F arriving = falloff * inv_distance_sq;
     return light_sample_towards<F>(wi, position, {arriving, arriving, arriving}, dirac_pdf<F>(),
-                                   mask_and(m, falloff > F(0)));
+                                   mask_and(request.lanes, falloff > F(0)), request);
   }
+
+  double power(std::int32_t row, const Sphere& scene_bounds) const;
+  std::optional<LightBounds> bounds(std::int32_t row) const;
 
  private:
   static constexpr int columns = 8;

@@ -35,7 +35,9 @@ SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, c
   };
   Film film(1, 1);
   std::vector<InvalidSample> invalid;
+  const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
   TileJob job{.scene = &scene,
+              .light_sampler = &light_sampler,
               .settings = &settings,
               .x_begin = 0,
               .y_begin = 0,

@@ -189,7 +189,8 @@ void test_emitter(TestRun& run, const Object& emitter, double distance, double r
     add_light(emitter, run.test.directory, lights, unread);
     run.warn(unread);
     const RandomSquares u_light(run.settings.sampler, seed);
-    const Vec3f receiver{0, 0, float(distance)};
+    // Without a surface: any normal will do.
+    const Receiver<float> receiver{{0, 0, float(distance)}, {0, 0, 1}, {0, 0, 1}, lit_side::medium};
     Samples samples;
     for (std::int64_t i = 0; i < rules.sample_count; ++i) {
       if (i % samples_between_checks == 0) throw_if_stopped(run.settings);

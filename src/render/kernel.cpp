@@ -45,7 +45,8 @@ void render_tile(TileJob& job) {
       job.is_stopped = true;
       return;
     }
-    run_integrator<F>(job.settings->integrator, *job.scene, block, job.settings->is_reordering);
+    run_integrator<F>(job.settings->integrator, *job.scene, *job.light_sampler, block,
+                      job.settings->is_reordering);
     set_invalid_aside(job, block, pixels.samples_per_replicate(), pixels);
     weigh_by_filter<F>(*job.scene, block);
     pixels.add_to_film(block, *job.film);

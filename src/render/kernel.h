@@ -4,6 +4,7 @@
 #include "film/film.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_block.h"
+#include "lightsampler/light_sampler.h"
 #include "render/render.h"
 
 #include <functional>
@@ -14,6 +15,7 @@ namespace etendue {
 /// A rectangle of pixels to render, upper bounds exclusive, and where its results go.
 struct TileJob {
   const Scene* scene;
+  const LightSampler* light_sampler;  ///< Over the scene's lights, as the settings name it.
   const RenderSettings* settings;
   int x_begin, y_begin, x_end, y_end;
   SampleBlock* block;  ///< Scratch of this thread.

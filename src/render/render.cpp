@@ -62,6 +62,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
   const int columns = (scene.camera.width_px + side - 1) / side,
             rows = (scene.camera.height_px + side - 1) / side;
   const auto start = std::chrono::steady_clock::now();
+  const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
 
   tbb::enumerable_thread_specific<Worker> workers;
   std::atomic<int> tiles_done{0};
@@ -71,6 +72,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
     Worker& worker = workers.local();
     const int x = tile % columns * side, y = tile / columns * side;
     TileJob job{.scene = &scene,
+                .light_sampler = &light_sampler,
                 .settings = &settings,
                 .x_begin = x,
                 .y_begin = y,

@@ -1,10 +1,11 @@
 #include "render/replay.h"
 
 #include "integrator/run_integrator.h"
+#include "integrator/single_sample.h"
 
 #include <fmt/format.h>
-#include <functional>
 #include <memory>
+#include <utility>
 
 namespace etendue {
 
@@ -36,32 +37,45 @@ std::unique_ptr<SampleBlock> block_of(const RenderSettings& settings, const Samp
   return block;
 }
 
+/// What the light sample was that the block has just cast the shadow ray of.
+SampleTrace::LightSample light_sample_of(const Scene& scene, const LightSampler& light_sampler,
+                                         const PathRules& rules, const SampleBlock& block,
+                                         const LightSampleNumber& which) {
+  const PathColumns& path = block.path;
+  const Vertex<F> vertex(scene, load_ray<F>(path.ray, 0), load_hit<F>(path.hit, 0));
+  const DirectLightSample<F> sample =
+      sample_direct_light<F>(scene, light_sampler, rules, rules.bsdf_samples(which.vertex), vertex,
+                             light_sample_bits<F>(scene, light_sampler, rules, path, 0, which), which.pass);
+  SampleTrace::LightSample trace{sample.light.light,
+                                 sample.light.end,
+                                 sample.light.radiance_over_pdf,
+                                 sample.light.pdf_solid_angle,
+                                 load_lanes<F>(block.unshadowed, 0),
+                                 block.shadow_is_needed[0] != 0,
+                                 false,
+                                 {}};
+  if (!trace.is_shadow_ray_cast) return trace;
+  trace.is_visible = is_visible(scene, sample.origin, sample.light.end);
+  if (!trace.is_visible) {
+    const Hit<F> hit = closest_hit(scene, {sample.origin, sample.along}, 0, shadow_segment_end);
+    trace.hidden_by = {hit.geometry, hit.primitive};
+  }
+  return trace;
+}
+
 SampleTrace::Vertex vertex_of(const Scene& scene, const PathRules& rules, const SampleBlock& block,
                               int number, int branch) {
   const PathColumns& path = block.path;
-  const Vertex<F> vertex(scene, path.ray, path.hit, 0);
+  const Hit<F> hit = load_hit<F>(path.hit, 0);
+  const Vertex<F> vertex(scene, load_ray<F>(path.ray, 0), hit);
   SampleTrace::Vertex trace{number, branch, SampleTrace::Vertex::Kind::nothing, vertex.position, {},
                             {},     {},     load_lanes<F>(block.radiance, 0)};
   if (!vertex.is_there) return trace;
   trace.kind = vertex.is_surface ? SampleTrace::Vertex::Kind::surface : SampleTrace::Vertex::Kind::medium;
-  const std::int32_t geometry = path.hit.geometry[0];
   if (vertex.is_surface)
-    trace.surface = {vertex.ng,       vertex.ns,
-                     geometry,        path.hit.primitive[0],
-                     vertex.material, scene.geometry.light[std::size_t(geometry)]};
-  if (number == rules.most_vertices) return trace;
-  if (rules.has_light_samples() && scene.lights.count() > 0) {
-    const int last = (rules.is_every_light ? scene.lights.count() : rules.light_samples) - 1;
-    const LightSample<F> sample = sample_lights<F>(scene, rules, path, vertex, 0, number, last);
-    trace.light_sample = {sample.light,
-                          sample.end,
-                          sample.radiance_over_pdf,
-                          sample.pdf_solid_angle(),
-                          load_lanes<F>(block.unshadowed, 0),
-                          block.shadow_is_needed[0] != 0,
-                          block.shadow_is_free[0] != 0};
-  }
-  if (rules.is_followed(number))
+    trace.surface = {vertex.ng,     vertex.ns,       hit.geometry,
+                     hit.primitive, vertex.material, scene.geometry.light[std::size_t(hit.geometry)]};
+  if (rules.bsdf_samples(number) > 0)
     trace.bsdf_sample = {block.next_ray.is_active[0] != 0, load_lanes<F>(block.next_ray.direction, 0),
                          load_lanes<F>(path.throughput, 0), path.pdf[0]};
   return trace;
@@ -79,12 +93,22 @@ SampleTrace replay(const Scene& scene, const RenderSettings& settings, const Sam
   trace.y_px = float(sample.y) + 0.5f + scene.filter.sample_offset_px(u_film.y);
   trace.ray_origin = load_lanes<F>(block->path.ray.origin, 0);
   trace.ray_direction = load_lanes<F>(block->path.ray.direction, 0);
-  const std::function<void(const SampleBlock&, int, int)> note = [&](const SampleBlock& at, int number,
-                                                                     int branch) {
-    trace.vertices.push_back(vertex_of(scene, settings.integrator.rules, at, number, branch));
-  };
-  block->on_vertex = &note;
-  run_integrator<F>(settings.integrator, scene, *block, false);
+  const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
+  const PathRules* rules = settings.integrator.path_rules();
+  std::optional<SampleTrace::LightSample> light_sample;
+  const BlockWatcher watcher{
+      .on_light_sample =
+          [&](const SampleBlock& at, int vertex, int number, std::int32_t pass) {
+            light_sample = light_sample_of(scene, light_sampler, *rules, at, {vertex, number, pass});
+          },
+      .on_vertex =
+          [&](const SampleBlock& at, int vertex, int branch) {
+            trace.vertices.push_back(vertex_of(scene, *rules, at, vertex, branch));
+            if (trace.vertices.back().kind != SampleTrace::Vertex::Kind::nothing)
+              trace.vertices.back().light_sample = std::exchange(light_sample, std::nullopt);
+          }};
+  block->watcher = &watcher;
+  run_integrator<F>(settings.integrator, scene, light_sampler, *block, false);
   trace.radiance = load_lanes<F>(block->radiance, 0);
   return trace;
 }

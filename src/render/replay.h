@@ -30,6 +30,10 @@ struct SampleTrace {
         pdf_solid_angle;  ///< 1/sr, the choice of the light included; 0: no sample. Infinite: a Dirac delta.
     Colorf unshadowed;    ///< What it adds where nothing hides it: BSDF, cosine, weight and path included.
     bool is_shadow_ray_cast, is_visible;
+    struct Hider {
+      std::int32_t geometry, primitive;
+    };
+    std::optional<Hider> hidden_by;  ///< The first thing on the shadow ray's way, where there is one.
   };
   struct BsdfSample {
     bool is_followed;  ///< Not where nothing is scattered, or where roulette ended the path.

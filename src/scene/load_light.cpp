@@ -36,22 +36,21 @@ void add_light(const Object& description, const std::filesystem::path& directory
   const std::string& type = description.type;
   if (type == point_plugin.name) {
     const PointLight light = make_point_light(description, unread);
-    lights.add(light.intensity, name, LightKind::point, lights.points.add(light.position));
+    lights.add<PointLights>(light.intensity, name, light.position);
   } else if (type == spot_plugin.name) {
     const SpotLight light = make_spot_light(description, unread);
-    lights.add(light.intensity, name, LightKind::spot, lights.spots.add(light));
+    lights.add<SpotLights>(light.intensity, name, light);
   } else if (type == directional_plugin.name) {
     const DirectionalLight light = make_directional_light(description, unread);
-    lights.add(light.irradiance, name, LightKind::directional, lights.directionals.add(light.direction));
+    lights.add<DirectionalLights>(light.irradiance, name, light.direction);
   } else if (type == distant_disk_plugin.name || type == constant_plugin.name) {
     const DistantDisk light = type == constant_plugin.name ? make_constant_environment(description, unread)
                                                            : make_distant_disk(description, unread);
-    lights.add(light.radiance, name, LightKind::distant_disk, lights.distant_disks.add(light));
+    lights.add<DistantDiskLights>(light.radiance, name, light);
   } else if (type == envmap_plugin.name) {
     EnvmapLight light = make_envmap_light(description, directory, unread);
     const Colorf scale{light.scale, light.scale, light.scale};
-    lights.add(scale, name, LightKind::envmap,
-               lights.envmaps.add(std::move(light.map), light.world_from_map));
+    lights.add<EnvmapLights>(scale, name, std::move(light.map), light.world_from_map);
   } else {
     throw unknown_plugin(description, light_plugins());
   }

@@ -43,16 +43,13 @@ class Loader {
     const Clock::time_point start_of_build = Clock::now();
     RayCaster rays(geometry_);
     const double seconds_build = seconds_since(start_of_build);
-    const bool has_textures = std::any_of(materials_.begin(), materials_.end(),
-                                          [](const Material& material) { return has_texture(material); });
-    return {
-        Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_), std::move(rays),
-              std::move(materials_), has_textures, std::move(lights_), medium_, sampler_},
-        integrator_ ? *integrator_ : Object{},
-        samples_per_pixel_,
-        warnings(),
-        seconds_since(start) - seconds_build,
-        seconds_build};
+    return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_),
+                  std::move(rays), Materials(std::move(materials_)), std::move(lights_), medium_, sampler_},
+            integrator_ ? *integrator_ : Object{},
+            samples_per_pixel_,
+            warnings(),
+            seconds_since(start) - seconds_build,
+            seconds_build};
   }
 
  private:

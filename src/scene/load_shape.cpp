@@ -136,13 +136,12 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
           fmt::format("{} triangle{} of the light '{}' {} there more than once; one of each shines", repeated,
                       repeated == 1 ? "" : "s", name, repeated == 1 ? "is" : "are")));
     const std::int32_t id = geometry.add_mesh(mesh, ids);
-    if (radiance) lights.add(*radiance, name, LightKind::mesh, lights.meshes.add(geometry, id));
+    if (radiance) lights.add<MeshLights>(*radiance, name, geometry, id);
   } else if (object.type == sphere_plugin.name) {
     const Parameters parameters(object, sphere_plugin, unread);
     const Sphere sphere = make_sphere(parameters);
     geometry.add_sphere(sphere, ids);
-    if (radiance)
-      lights.add(*radiance, label(object, numbered), LightKind::sphere, lights.spheres.add(sphere));
+    if (radiance) lights.add<SphereLights>(*radiance, label(object, numbered), sphere);
   } else if (object.type == rectangle_plugin.name) {
     const Parameters parameters(object, rectangle_plugin, unread);
     const Transform transform = world_from_object(parameters);
@@ -154,9 +153,8 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     if (radiance) {
       // The front stays in front under a mirroring transform, as for the mesh.
       const bool is_mirrored = determinant(transform) < 0;
-      const std::int32_t row =
-          lights.rectangles.add(corner, is_mirrored ? along_y : along_x, is_mirrored ? along_x : along_y);
-      lights.add(*radiance, label(object, numbered), LightKind::rectangle, row);
+      lights.add<RectangleLights>(*radiance, label(object, numbered), corner, is_mirrored ? along_y : along_x,
+                                  is_mirrored ? along_x : along_y);
     }
   } else if (object.type == disk_plugin.name) {
     const Parameters parameters(object, disk_plugin, unread);
@@ -165,7 +163,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     check_extent(object, disk.center, (disk.center + disk.along_x) - disk.center,
                  (disk.center + disk.along_y) - disk.center);
     geometry.add_disk(disk, ids);
-    if (radiance) lights.add(*radiance, label(object, numbered), LightKind::disk, lights.disks.add(disk));
+    if (radiance) lights.add<DiskLights>(*radiance, label(object, numbered), disk);
   } else {
     throw unknown_plugin(object, shape_plugins());
   }

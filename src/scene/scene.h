@@ -11,7 +11,6 @@
 #include "sampler/sampler.h"
 
 #include <optional>
-#include <vector>
 
 namespace etendue {
 
@@ -20,8 +19,7 @@ struct Scene {
   PixelFilter filter;
   Geometry geometry;
   RayCaster rays;  ///< Over `geometry`.
-  std::vector<Material> materials;
-  bool has_textures = false;  ///< Some material needs uv.
+  Materials materials;
   Lights lights;
   std::optional<HomogeneousMedium> medium;
   SamplerKind sampler;

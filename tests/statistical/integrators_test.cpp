@@ -23,14 +23,14 @@ namespace {
 struct Method {
   const char* name;
   const char* integrator;
-  DirectLight heuristic;
+  Heuristic heuristic;
 };
 /// Each is held against the first.
-constexpr Method methods[]{{"mis balance", "mis", DirectLight::balance},
-                           {"light", "light", DirectLight::balance},
-                           {"direct", "direct", DirectLight::balance},
-                           {"average", "average", DirectLight::balance},
-                           {"mis power", "mis", DirectLight::power}};
+constexpr Method methods[]{{"mis balance", "mis", Heuristic::balance},
+                           {"light", "light", Heuristic::balance},
+                           {"direct", "direct", Heuristic::balance},
+                           {"average", "average", Heuristic::balance},
+                           {"mis power", "mis", Heuristic::power}};
 constexpr int block_px = 16;
 
 /// \param tests of the whole family, at `level`
@@ -194,10 +194,12 @@ TEST(Bits, AreTheSameForTilesInAnyOrder) {
     const Film film = render(loaded.scene, settings).film;
     Film backwards(80, 80);
     const auto block = std::make_unique<SampleBlock>();
+    const LightSampler light_sampler = light_sampler_for(settings.integrator, loaded.scene.lights);
     std::vector<InvalidSample> invalid;
     for (int y = 64; y >= 0; y -= 32)
       for (int x = 64; x >= 0; x -= 32) {
         TileJob job{.scene = &loaded.scene,
+                    .light_sampler = &light_sampler,
                     .settings = &settings,
                     .x_begin = x,
                     .y_begin = y,

@@ -23,13 +23,13 @@ constexpr int family_size = 150;  // At least as many tests as are made below.
 struct Method {
   const char* name;
   const char* integrator;
-  DirectLight heuristic;
+  Heuristic heuristic;
 };
-constexpr Method methods[]{{"light", "light", DirectLight::balance},
-                           {"direct", "direct", DirectLight::balance},
-                           {"average", "average", DirectLight::balance},
-                           {"mis balance", "mis", DirectLight::balance},
-                           {"mis power", "mis", DirectLight::power}};
+constexpr Method methods[]{{"light", "light", Heuristic::balance},
+                           {"direct", "direct", Heuristic::balance},
+                           {"average", "average", Heuristic::balance},
+                           {"mis balance", "mis", Heuristic::balance},
+                           {"mis power", "mis", Heuristic::power}};
 
 constexpr int side_px = 32;
 const Vec3d eye{1.5, -2.5, 2};

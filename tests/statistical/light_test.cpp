@@ -1,4 +1,4 @@
-// Every kind of light: points follow pdf_area, which integrates to 1; the choice of a light follows its pmf.
+// Every kind of light: samples follow their density, which integrates to 1; powers and bounds hold all of it.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its tests), fixed seeds.
 // Seen to fail when: the alias table's thresholds are all 2^31; what is left of u.y is not stretched back;
@@ -15,7 +15,6 @@
 #include "geometry/bounds.h"
 #include "geometry/shapes.h"
 #include "image/image_file.h"
-#include "integrator/light_sampling.h"
 #include "sphere_cells.h"
 #include "stats/chi_squared.h"
 #include "stats/significance.h"
@@ -62,25 +61,48 @@ void expect_counts(const std::vector<double>& observed, const std::vector<double
       << " degrees of freedom, cell " << test.wrong_empty_cell << " should be empty";
 }
 
+Receiver<float> receiver_at(const Vec3f& position) {
+  return {position, {0, 0, 1}, {0, 0, 1}, lit_side::front | lit_side::back};
+}
+
 /// A light alone, and the geometry it lies on.
 struct Alone {
   Geometry geometry;
   Lights lights;
 
-  LightPoint<float> sample(const Vec3f& reference, const Vec2<std::uint32_t>& u) const {
-    const LightPoint<float> point = lights.sample_position<float>(0, reference, u, true);
-    // Both sides of every MIS weight see one density.
-    EXPECT_NEAR(point.pdf_area, (lights.pdf_area<float>(0, reference, point.position, point.ng, true)),
-                1e-5f * point.pdf_area);
+  /// A point on the light, by the table of its kind. Its density is in the sample that the point gives, and
+  /// is the one that a hit there has: both sides of every MIS weight see one density.
+  template <class Table>
+  LightPoint<float> point(const Vec3f& from, const Vec2<std::uint32_t>& u) const {
+    const Receiver<float> receiver = receiver_at(from);
+    LightPoint<float> point;
+    if constexpr (std::is_same_v<Table, SphereLights>)
+      point = lights.table<SphereLights>().sample_position<float>(0, from, u);
+    else
+      point = lights.table<Table>().template sample_position<float>(0, u);
     EXPECT_NEAR(length(wide(point.ng)), 1, 1e-5);
     EXPECT_TRUE(point.piece >= 0 && point.piece < light_pieces) << point.piece;
+    const LightSample<float> sample = lights.sample<float>(0, 1, receiver, u, true);
+    EXPECT_EQ(sample.end, point.position);
+    const float found =
+        lights.pdf_solid_angle<float>(0, 1, receiver, {sample.end, point.ng, sample.wi, 0}, true);
+    EXPECT_NEAR(sample.pdf_solid_angle, found, 1e-5f * found);
+    if (sample.is_there) {
+      const double distance_sq = length_sq(wide(point.position) - wide(from)),
+                   cosine = -dot(wide(point.ng), wide(sample.wi));
+      // Near the light's plane the cosine is a difference of nearly equal numbers.
+      if (cosine > 1e-2) {
+        EXPECT_NEAR(sample.pdf_solid_angle, point.pdf_area * distance_sq / cosine,
+                    1e-3 * sample.pdf_solid_angle);
+      }
+    }
     return point;
   }
 };
 
 /// Not inline: GCC 12 else sees a vector that it knows to be empty, and warns of what cannot happen.
 [[gnu::noinline]] void add_sphere_light(Alone& alone, const Sphere& sphere) {
-  alone.lights.add({1, 1, 1}, "sphere", LightKind::sphere, alone.lights.spheres.add(sphere));
+  alone.lights.add<SphereLights>({1, 1, 1}, "sphere", sphere);
 }
 
 TEST(MeshLight, TrianglesOfVeryUnequalAreaAreChosenByAreaAndFilledEvenly) {
@@ -103,13 +125,13 @@ TEST(MeshLight, TrianglesOfVeryUnequalAreaAreChosenByAreaAndFilledEvenly) {
     }
     Alone alone;
     const std::int32_t id = alone.geometry.add_mesh(mesh, {0, 0});
-    alone.lights.add({1, 1, 1}, "mesh", LightKind::mesh, alone.lights.meshes.add(alone.geometry, id));
+    alone.lights.add<MeshLights>({1, 1, 1}, "mesh", alone.geometry, id);
 
     // Per triangle, four cells of equal area.
     std::vector<double> observed(std::size_t(4 * triangles)), expected;
     RandomBits random(5);
     for (int i = 0; i < samples; ++i) {
-      const LightPoint<float> point = alone.sample({0.3f, 0.2f, -5}, random.square());
+      const LightPoint<float> point = alone.point<MeshLights>({0.3f, 0.2f, -5}, random.square());
       ASSERT_NEAR(point.pdf_area * total, 1, 1e-5);
       const auto k = std::size_t(std::lround(point.position.z));
       const double y = point.position.y / mesh.positions[3 * k + 2].y,
@@ -127,12 +149,11 @@ TEST(RectangleLight, PointsAreUniformOverIt) {
   for (const float size : {1e-4f, 1.0f, 1e4f}) {
     Alone alone;
     const Vec3f corner{1, -2, 3}, edge_u{size, 0, 0}, edge_v{0.5f * size, 0.7f * size, 0};
-    alone.lights.add({1, 1, 1}, "rectangle", LightKind::rectangle,
-                     alone.lights.rectangles.add(corner, edge_u, edge_v));
+    alone.lights.add<RectangleLights>({1, 1, 1}, "rectangle", corner, edge_u, edge_v);
     std::vector<double> observed(256);
     RandomBits random(6);
     for (int i = 0; i < samples; ++i) {
-      const LightPoint<float> point = alone.sample({0, 0, 4}, random.square());
+      const LightPoint<float> point = alone.point<RectangleLights>({0, 0, 4}, random.square());
       ASSERT_NEAR(point.pdf_area * (0.7 * size * size), 1, 1e-5);
       ASSERT_NEAR(point.ng.z, 1, 1e-6);
       const double y = (double(point.position.y) - corner.y) / edge_v.y,
@@ -155,14 +176,14 @@ TEST(DiskLight, PointsAreUniformOverIt) {
   for (const Transform& transform : transforms) {
     Alone alone;
     const Disk disk = make_disk(transform);
-    alone.lights.add({1, 1, 1}, "disk", LightKind::disk, alone.lights.disks.add(disk));
+    alone.lights.add<DiskLights>({1, 1, 1}, "disk", disk);
     const Vec3d along_x = wide(disk.along_x), along_y = wide(disk.along_y), across = cross(along_x, along_y);
     const Vec3d front = normalize(transform_normal(transform, {0, 0, 1}));
     // Rings of equal area, each in sectors of equal angle, on the unit disk.
     std::vector<double> observed(8 * 24);
     RandomBits random(11);
     for (int i = 0; i < samples; ++i) {
-      const LightPoint<float> point = alone.sample({0, 0, 40}, random.square());
+      const LightPoint<float> point = alone.point<DiskLights>({0, 0, 40}, random.square());
       ASSERT_NEAR(point.pdf_area * std::numbers::pi * length(across), 1, 1e-5);
       ASSERT_NEAR(dot(wide(point.ng), front), 1, 1e-5);
       const Vec3d p = wide(point.position) - wide(disk.center);
@@ -204,7 +225,8 @@ TEST(SphereLight, PointsFollowTheDensityFromNearAndFar) {
             const Vec3d ng = on_sphere(stretched), position = wide(sphere.center) + ng * double(radius);
             const auto narrow = [](const Vec3d& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
             return 2 * cap * std::pow(0.5 * (1 - stretched.z), 3) * radius * radius *
-                   alone.lights.pdf_area<float>(0, reference, narrow(position), narrow(ng), true);
+                   alone.lights.table<SphereLights>().pdf_area<float>(0, reference, narrow(position),
+                                                                      narrow(ng));
           },
           8);
       double total = 0;
@@ -219,7 +241,7 @@ TEST(SphereLight, PointsFollowTheDensityFromNearAndFar) {
       std::vector<double> observed(cells.size());
       RandomBits random(7);
       for (int i = 0; i < samples; ++i) {
-        const LightPoint<float> point = alone.sample(reference, random.square());
+        const LightPoint<float> point = alone.point<SphereLights>(reference, random.square());
         const Vec3d ng = frame.local_from_world(normalize(wide(point.ng)));
         const double sin_sq = ng.x * ng.x + ng.y * ng.y,
                      one_minus_cos = ng.z > 0 ? sin_sq / (1 + ng.z) : 1 - ng.z;
@@ -236,12 +258,13 @@ TEST(SphereLight, GivesNoSampleInside) {
   add_sphere_light(alone, {{0, 0, 0}, 1});
   RandomBits random(8);
   for (int i = 0; i < 100; ++i)
-    EXPECT_EQ((alone.lights.sample_position<float>(0, {0.2f, 0.1f, 0}, random.square(), true).pdf_area), 0);
+    EXPECT_FALSE(
+        (alone.lights.sample<float>(0, 1, receiver_at({0.2f, 0.1f, 0}), random.square(), true).is_there));
 }
 
 /// The light alone among many, as an environment: its directions against its density.
 LightSample<float> sample_of(const Alone& alone, const Vec2<std::uint32_t>& u) {
-  return alone.lights.sample<float>(0, 1, {0.5f, -1, 2}, u, true);
+  return alone.lights.sample<float>(0, 1, receiver_at({0.5f, -1, 2}), u, true);
 }
 
 void expect_directions_follow_density(const Alone& alone, const std::string& what, int steps,
@@ -268,7 +291,7 @@ void expect_directions_follow_density(const Alone& alone, const std::string& wha
     ASSERT_TRUE(sample.piece >= 0 && sample.piece < light_pieces) << sample.piece;
     ++observed[cells.cell_of(wide(sample.wi))];
     // Both sides of every MIS weight see one density; rounding may move a direction over the rim of a disk.
-    const double stated = sample.pdf_solid_angle(), found = pdf(wide(sample.wi));
+    const double stated = sample.pdf_solid_angle, found = pdf(wide(sample.wi));
     odd_densities += !(std::abs(stated - found) < 2e-3 * stated);
     const Colorf radiance = alone.lights.infinite_radiance<float>(0, sample.wi, true);
     odd_radiances += !(std::abs(sample.radiance_over_pdf.g * stated - radiance.g) < 2e-3 * radiance.g + 1e-6);
@@ -279,7 +302,7 @@ void expect_directions_follow_density(const Alone& alone, const std::string& wha
 }
 
 [[gnu::noinline]] void add_disk(Alone& alone, const DistantDisk& disk) {
-  alone.lights.add(disk.radiance, "disk", LightKind::distant_disk, alone.lights.distant_disks.add(disk));
+  alone.lights.add<DistantDiskLights>(disk.radiance, "disk", disk);
 }
 
 TEST(DistantDisk, DirectionsFollowTheDensity) {
@@ -305,7 +328,7 @@ TEST(DistantDisk, TheSunIsRoundAndOfItsSize) {
   RandomBits random(12);
   for (int i = 0; i < samples; ++i) {
     const LightSample<float> sample = sample_of(alone, random.square());
-    ASSERT_NEAR(sample.pdf_solid_angle() * solid_angle, 1, 1e-5);
+    ASSERT_NEAR(sample.pdf_solid_angle * solid_angle, 1, 1e-5);
     const Vec3d d = frame.local_from_world(wide(sample.wi));
     const double ring = (d.x * d.x + d.y * d.y) / std::pow(std::sin(half_angle), 2),
                  turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
@@ -330,8 +353,7 @@ std::vector<float> random_map(int width, int height, bool has_hot_texel) {
 
 [[gnu::noinline]] void add_envmap(Alone& alone, int width, int height, const std::vector<float>& rgb,
                                   const Transform& world_from_map = {}) {
-  alone.lights.add({1, 1, 1}, "map", LightKind::envmap,
-                   alone.lights.envmaps.add({width, height, rgb}, world_from_map));
+  alone.lights.add<EnvmapLights>({1, 1, 1}, "map", Envmap(width, height, rgb), world_from_map);
 }
 
 TEST(Envmap, DirectionsFollowTheDensity) {
@@ -440,12 +462,19 @@ TEST(Envmap, RadianceOverDensityIsNearlyConstantWhereTheMapIsSmooth) {
   EXPECT_LT(largest, 3 * rough_ratio.mean);
 }
 
+/// One of the lights of a scene, all alike, and a sample of it.
+LightSample<float> sample_lights(const Scene& scene, const Vec3f& from, const Vec2<std::uint32_t>& u) {
+  const Receiver<float> receiver = receiver_at(from);
+  const LightChoice<float> choice = UniformLights(scene.lights).choose<float>(receiver, u.x, 0);
+  return scene.lights.sample<float>(choice.light, choice.pmf, receiver, {choice.u_left, u.y}, true);
+}
+
 /// Irradiance on a surface facing +z at the origin, from samples of all lights of a scene.
 RunningStatistics sampled_irradiance(const Scene& scene, const Vec3f& at, unsigned seed) {
   RandomBits random(seed);
   RunningStatistics irradiance;
   for (int i = 0; i < samples; ++i) {
-    const LightSample<float> sample = sample_lights<float>(scene, at, random.square(), true);
+    const LightSample<float> sample = sample_lights(scene, at, random.square());
     irradiance.add(sample.is_there ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
   }
   return irradiance;
@@ -578,11 +607,10 @@ TEST(SpotLight, SendsOutItsPower) {
       double power = 0;
       for (int i = 0; i < rings; ++i) {
         const double angle = (i + 0.5) / rings * std::numbers::pi;
-        const LightSample<float> sample =
-            sample_lights<float>(loaded.scene, {float(2 * std::sin(angle)), 0, float(2 * std::cos(angle))},
-                                 {1u << 31, 1u << 31}, true);
+        const LightSample<float> sample = sample_lights(
+            loaded.scene, {float(2 * std::sin(angle)), 0, float(2 * std::cos(angle))}, {1u << 31, 1u << 31});
         if (!sample.is_there) continue;
-        EXPECT_EQ(sample.pdf_solid_angle(), std::numeric_limits<float>::infinity());
+        EXPECT_EQ(sample.pdf_solid_angle, std::numeric_limits<float>::infinity());
         power += sample.radiance_over_pdf.g * 4 * 2 * std::numbers::pi * std::sin(angle) * std::numbers::pi /
                  rings;
       }
@@ -597,7 +625,7 @@ TEST(LightSample, EndsOnTheLightOrBeyondTheScene) {
   RandomBits random(18);
   for (const Vec3f& at : {Vec3f{0, 0, 0}, Vec3f{0.5f, 0.5f, -1}, Vec3f{-40, 0, 3}, Vec3f{1e4f, 1, 1}})
     for (int i = 0; i < 1000; ++i) {
-      const LightSample<float> sample = sample_lights<float>(loaded.scene, at, random.square(), true);
+      const LightSample<float> sample = sample_lights(loaded.scene, at, random.square());
       ASSERT_TRUE(sample.is_there);
       if (sample.light == 2) {
         ASSERT_EQ(sample.end, (Vec3f{3, 4, 5}));
@@ -611,23 +639,22 @@ TEST(LightSample, EndsOnTheLightOrBeyondTheScene) {
     }
 }
 
-TEST(LightSample, OfAGivenLightHasNoProbabilityInIt) {
+TEST(LightSample, HasTheProbabilityOfItsLightInIt) {
   const LoadedScene loaded =
       scene_with(R"(<luminaire type="constant"><color name="radiance" value="2"/></luminaire>
     <luminaire type="constant"><color name="radiance" value="5"/></luminaire>)");
   RandomBits random(21);
-  const LightSample<float> chosen = sample_lights<float>(loaded.scene, {0, 0, 0}, random.square(), true);
-  EXPECT_NEAR(chosen.pdf_solid_angle() * 8 * std::numbers::pi, 1, 1e-6) << "here it is part of the density";
+  const LightSample<float> chosen = sample_lights(loaded.scene, {0, 0, 0}, random.square());
+  EXPECT_NEAR(chosen.pdf_solid_angle * 8 * std::numbers::pi, 1, 1e-6);
   for (const std::int32_t light : {0, 1}) {
-    const LightChoice<float> choice{light, 12345u << 16, 1.0f};
     const LightSample<float> sample =
-        sample_chosen_light<float>(loaded.scene, choice, {0, 0, 0}, 99u << 20, true);
+        loaded.scene.lights.sample<float>(light, 1, receiver_at({0, 0, 0}), {12345u << 16, 99u << 20}, true);
     EXPECT_EQ(sample.light, light);
-    EXPECT_NEAR(sample.pdf_solid_angle() * 4 * std::numbers::pi, 1, 1e-6);
+    EXPECT_NEAR(sample.pdf_solid_angle * 4 * std::numbers::pi, 1, 1e-6) << "here that is 1";
     EXPECT_NEAR(sample.radiance_over_pdf.g / (4 * std::numbers::pi), light == 0 ? 2 : 5, 1e-5);
     EXPECT_NEAR(
-        (environment_pdf_solid_angle<float>(loaded.scene, light, sample.wi, true)) * 8 * std::numbers::pi, 1,
-        1e-6);
+        (loaded.scene.lights.infinite_pdf_solid_angle<float>(light, sample.wi, true)) * 4 * std::numbers::pi,
+        1, 1e-6);
   }
 }
 
@@ -665,26 +692,6 @@ TEST(InversionTable, ChoosesByShareAndKeepsTheOrder) {
   }
 }
 
-TEST(LightSampler, ChoosesEachLightWithItsProbability) {
-  RandomBits random(9);
-  for (const std::int32_t lights : {1, 3, 16, 1000}) {
-    std::vector<double> observed(static_cast<std::size_t>(lights));
-    double left = 0;
-    for (int i = 0; i < samples; ++i) {
-      const LightChoice<float> choice = choose_light_uniformly<float>(lights, random.square().x);
-      ASSERT_EQ(choice.pmf, uniform_light_pmf(lights));
-      ++observed[std::size_t(choice.light)];
-      left += choice.u_left * 0x1p-32;
-    }
-    EXPECT_NEAR(left / samples, 0.5, 5 * std::sqrt(1.0 / 12 / samples))
-        << "what is left over must be uniform";
-    if (lights > 1)
-      expect_counts(observed,
-                    std::vector<double>(observed.size(), samples * double(uniform_light_pmf(lights))),
-                    std::to_string(lights) + " lights");
-  }
-}
-
 /// Solid angle and projected solid angle come out right, and the density is the one that MIS sees.
 TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
   const Vec3d center{0, 0, 2}, half_u{0.9, 0, 0.3}, half_v{0, -0.6, 0.1}, sphere_center{1, 2, 1};
@@ -703,7 +710,7 @@ TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
   RandomBits random(10);
   RunningStatistics irradiance;
   for (int i = 0; i < samples; ++i) {
-    const LightSample<float> sample = sample_lights<float>(scene, {0, 0, 0}, random.square(), true);
+    const LightSample<float> sample = sample_lights(scene, {0, 0, 0}, random.square());
     irradiance.add(sample.is_there ? double(sample.radiance_over_pdf.g) * std::max(0.0f, sample.wi.z) : 0);
     if (!sample.is_there) continue;
     const std::int32_t light = sample.light;
@@ -712,12 +719,114 @@ TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
                                           float(normalize(cross(half_u, half_v)).y),
                                           float(normalize(cross(half_u, half_v)).z)}
                                   : Vec3f{1, 0, 0};
-    const float pdf = light_pdf_solid_angle<float>(scene, light, {0, 0, 0}, sample.end, ng, sample.wi, true);
-    ASSERT_NEAR(sample.pdf_solid_angle() / pdf, 1, 2e-4) << "light " << light;
+    const float pdf = scene.lights.pdf_solid_angle<float>(light, 1.0f / 3, receiver_at({0, 0, 0}),
+                                                          {sample.end, ng, sample.wi, 0}, true);
+    ASSERT_NEAR(sample.pdf_solid_angle / pdf, 1, 2e-4) << "light " << light;
   }
   const MeanTest test = t_test(irradiance, exact);
   EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
       << irradiance.mean << ", exact " << exact;
+}
+
+// --- Power and bounds ---
+
+/// One light of each kind, by its number among the kinds; strength 2.
+const char* const light_of_each_kind[] = {
+    R"(<mesh type="obj"><string name="filename" value="roof.obj"/><luminaire type="area">
+      <color name="radiance" value="2"/></luminaire></mesh>)",
+    R"(<shape type="rectangle"><transform name="toWorld"><rotate axis="1,2,0" angle="50"/>
+      <scale value="0.4,0.7,1"/></transform><luminaire type="area"><color name="radiance" value="2"/></luminaire>
+      </shape>)",
+    R"(<shape type="sphere"><point name="center" value="0.2,0.3,0.1"/><float name="radius" value="0.4"/>
+      <luminaire type="area"><color name="radiance" value="2"/></luminaire></shape>)",
+    R"(<shape type="disk"><transform name="toWorld"><scale value="0.5,0.3,1"/><rotate axis="1,1,0" angle="40"/>
+      </transform><luminaire type="area"><color name="radiance" value="2"/></luminaire></shape>)",
+    R"(<luminaire type="point"><point name="position" value="0.2,0.1,0.3"/><color name="intensity" value="2"/>
+      </luminaire>)",
+    R"(<luminaire type="spot"><color name="intensity" value="2"/><float name="cutoffAngle" value="70"/>
+      <float name="beamWidth" value="30"/><vector name="direction" value="1,2,-1"/></luminaire>)",
+    R"(<luminaire type="directional"><vector name="direction" value="1,2,-1"/>
+      <color name="irradiance" value="2"/></luminaire>)",
+    R"(<luminaire type="distantdisk"><color name="radiance" value="2"/><float name="thetaA" value="40"/>
+      </luminaire>)",
+    R"(<luminaire type="envmap"><string name="filename" value="map.exr"/><float name="scale" value="2"/>
+      </luminaire>)"};
+static_assert(std::size(light_of_each_kind) == light_kind_count, "a kind of light is not tested");
+
+LoadedScene scene_of_kind(std::size_t kind) {
+  return scene_with(
+      light_of_each_kind[kind],
+      {{"roof.obj", "v -1 -1 0\nv 1 -1 0\nv 1 0 0.7\nv -1 0 0.7\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\nf 4 3 5 6\n"},
+       exr_file("map.exr", 16, 9, random_map(16, 9, true))});
+}
+
+/// All that leaves the scene through a large sphere about it, by the light samples of receivers there; or, of
+/// lights at infinity, what passes the cross-section of the scene.
+TEST(LightPower, IsWhatLightSamplesAddUpTo) {
+  std::mt19937 engine(23);
+  std::normal_distribution<double> normal;
+  RandomBits random(24);
+  for (std::size_t kind = 0; kind < light_kind_count; ++kind) {
+    const LoadedScene loaded = scene_of_kind(kind);
+    const Lights& lights = loaded.scene.lights;
+    ASSERT_EQ(lights.count(), 1);
+    const bool is_infinite = !lights.bounds(0);
+    const double radius = is_infinite ? bounding_sphere(loaded.scene.geometry).radius : 50;
+    RunningStatistics power;
+    for (int i = 0; i < samples; ++i) {
+      const Vec3d d = normalize(Vec3d{normal(engine), normal(engine), normal(engine)});
+      const Vec3d at = is_infinite ? Vec3d{0, 0, 0} : d * radius;
+      const LightSample<float> sample = lights.sample<float>(
+          0, 1, receiver_at({float(at.x), float(at.y), float(at.z)}), random.square(), true);
+      const double arriving = sample.is_there ? luminance(sample.radiance_over_pdf) : 0;
+      // On the sphere each sample counts with its cosine to the surface, facing the light.
+      const double facing = is_infinite ? 1 : std::max(0.0, -dot(wide(sample.wi), d));
+      power.add(arriving * facing * (is_infinite ? 1 : 4) * std::numbers::pi * radius * radius);
+    }
+    if (power.variance() < 1e-8 * power.mean * power.mean) {
+      EXPECT_NEAR(lights.power(0), power.mean, 1e-4 * power.mean) << "kind " << kind;
+      continue;
+    }
+    const MeanTest test = t_test(power, lights.power(0));
+    EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
+        << "kind " << kind << ": " << power.mean << " +- " << power.standard_error() << ", stated "
+        << lights.power(0);
+  }
+}
+
+/// Every sample ends in the box; and no receiver beyond the cones of normals and emission is lit.
+TEST(LightBounds, HoldAllOfTheLight) {
+  std::mt19937 engine(25);
+  std::normal_distribution<double> normal;
+  RandomBits random(26);
+  for (std::size_t kind = 0; kind < light_kind_count; ++kind) {
+    const LoadedScene loaded = scene_of_kind(kind);
+    const std::optional<LightBounds> bounds = loaded.scene.lights.bounds(0);
+    if (!bounds) continue;
+    EXPECT_NEAR(length(wide(bounds->axis)), 1, 1e-5) << "kind " << kind;
+    int lit = 0;
+    double least_cosine = 1;
+    const double widest = std::acos(double(bounds->cos_normals)) + std::acos(double(bounds->cos_emission));
+    for (int i = 0; i < samples; ++i) {
+      const Vec3d d = normalize(Vec3d{normal(engine), normal(engine), normal(engine)}) * 3.0;
+      const LightSample<float> sample = loaded.scene.lights.sample<float>(
+          0, 1, receiver_at({float(d.x), float(d.y), float(d.z)}), random.square(), true);
+      if (!sample.is_there) continue;
+      ++lit;
+      const double slack = 1e-5;
+      for (const auto axis : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
+        ASSERT_GE(sample.end.*axis, bounds->box.low.*axis - slack) << "kind " << kind;
+        ASSERT_LE(sample.end.*axis, bounds->box.high.*axis + slack) << "kind " << kind;
+      }
+      const double cosine = -dot(wide(sample.wi), wide(bounds->axis));
+      least_cosine = std::min(least_cosine, cosine);
+      ASSERT_LE(std::acos(std::clamp(cosine, -1.0, 1.0)), widest + 1e-3) << "kind " << kind;
+    }
+    EXPECT_GT(lit, 1000) << "kind " << kind;
+    // Not much wider than need be.
+    EXPECT_LT(std::acos(least_cosine), widest + 1e-3) << "kind " << kind;
+    EXPECT_GT(std::acos(least_cosine), std::min(widest, std::numbers::pi) - 0.2) << "kind " << kind;
+  }
 }
 
 }  // namespace

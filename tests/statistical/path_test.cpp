@@ -425,12 +425,9 @@ TEST(DirectLight, OfEveryLightIsThatOfOneAtRandom) {
   expect_agreement(four_lights().scene, {{"every_light", 128}, {"light", 512}, {"mis", 512}}, "every light");
 }
 
-RenderSettings several(DirectLight direct_light, int light_samples, int bsdf_samples, int samples,
-                       std::uint64_t seed) {
+RenderSettings several(const DirectLight& direct_light, int samples, std::uint64_t seed) {
   RenderSettings settings = render_settings("mis", samples, samples, seed);
-  settings.integrator.rules.direct_light = direct_light;
-  settings.integrator.rules.light_samples = light_samples;
-  settings.integrator.rules.bsdf_samples = bsdf_samples;
+  settings.integrator.rules = PathRules::direct(direct_light);
   return settings;
 }
 
@@ -445,21 +442,19 @@ TEST(DirectLight, BySeveralSamplesHasTheSameMeanAndLessVariance) {
   const std::string mist = medium_xml({0.1, 0.2, 0.3}, {0.2, 0.1, 0.1}, 0.5, {-2, -2, -1}, {2, 2, 1.2});
   for (const std::string& medium : {std::string(), mist}) {
     const LoadedScene loaded = four_lights(medium);
-    const Film once = rendered(loaded.scene, several(DirectLight::balance, 1, 1, 256, 20), "mis");
+    const Film once = rendered(loaded.scene, several(ByBoth{}, 256, 20), "mis");
     const double variance = mean_variance(once);
     struct Case {
       const char* what;
       DirectLight direct_light;
-      int light_samples, bsdf_samples;
     };
-    for (const Case& c :
-         {Case{"mis, 3 and 2", DirectLight::balance, 3, 2}, Case{"power, 2 and 3", DirectLight::power, 2, 3},
-          Case{"lights, 3", DirectLight::lights, 3, 0}}) {
-      const Film film =
-          rendered(loaded.scene, several(c.direct_light, c.light_samples, c.bsdf_samples, 128, 21), c.what);
+    for (const Case& c : {Case{"mis, 3 and 2", ByBoth{Heuristic::balance, {.count = 3}, 2}},
+                          Case{"power, 2 and 3", ByBoth{Heuristic::power, {.count = 2}, 3}},
+                          Case{"lights, 3", ByLights{{.count = 3}}}}) {
+      const Film film = rendered(loaded.scene, several(c.direct_light, 128, 21), c.what);
       expect_equal_means(film, once, c.what);
       // What the pixel's area and the medium add stays as it is.
-      if (c.bsdf_samples > 0) {
+      if (std::holds_alternative<ByBoth>(c.direct_light)) {
         EXPECT_LT(mean_variance(film), (medium.empty() ? 0.8 : 0.95) * variance) << c.what;
       }
     }

@@ -186,8 +186,8 @@ INSTANTIATE_TEST_SUITE_P(Isas, Unlit, testing::ValuesIn(available_isas()),
                          [](const auto& info) { return std::string(isa_name(info.param)); });
 
 TEST(UnlitNames, NeedsWhatItCannotGuess) {
-  EXPECT_EQ(integrator_from_name("ao").kind, IntegratorKind::visibility);
-  EXPECT_TRUE(std::isinf(integrator_from_name("av").visibility.length));
+  EXPECT_TRUE(std::get<VisibilityRules>(integrator_from_name("ao").rules).is_cosine_weighted);
+  EXPECT_TRUE(std::isinf(std::get<VisibilityRules>(integrator_from_name("av").rules).length));
   EXPECT_THROW(integrator_from_name("simple"), InputError);
 }
 

@@ -33,6 +33,10 @@ const std::vector<std::vector<double>>& several_weights() {
   return all;
 }
 
+AliasSample<float> sample(const AliasTable& table, std::uint32_t u) {
+  return sample_alias<float>(table.threshold.data(), table.alias.data(), 0, std::int32_t(table.size()), u);
+}
+
 /// The share of all 2^32 values of u that choose each entry, by bisection: within a cell, the choice changes
 /// once.
 std::vector<float> count_all_choices(const AliasTable& table) {
@@ -41,7 +45,7 @@ std::vector<float> count_all_choices(const AliasTable& table) {
   for (std::uint64_t cell = 0; cell < n; ++cell) {
     const auto begin = ((cell << 32) + n - 1) / n;
     const auto end = (((cell + 1) << 32) + n - 1) / n;
-    const auto choice = [&](std::uint64_t u) { return table.sample(static_cast<std::uint32_t>(u)).index; };
+    const auto choice = [&](std::uint64_t u) { return sample(table, static_cast<std::uint32_t>(u)).index; };
     auto low = begin, high = end;  // the choice is the first one below `low`, another from `high` on
     while (low < high) {
       const auto middle = (low + high) / 2;
@@ -84,7 +88,7 @@ TEST(AliasTable, frequencies_pass_chi_squared) {
   for (const auto& weights : several_weights()) {
     const auto table = make_alias_table(weights);
     std::vector<double> count(weights.size());
-    for (int i = 0; i < samples; ++i) ++count[table.sample(static_cast<std::uint32_t>(random())).index];
+    for (int i = 0; i < samples; ++i) ++count[sample(table, static_cast<std::uint32_t>(random())).index];
     double statistic = 0;
     int cells = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -102,15 +106,15 @@ TEST(AliasTable, frequencies_pass_chi_squared) {
   }
 }
 
-TEST(AliasTable, remapped_u_is_uniform_again) {
+TEST(AliasTable, u_left_is_uniform_again) {
   const auto table = make_alias_table(std::vector<double>{1, 2, 0, 4, 0.25});
   std::vector<double> sum(table.size()), sum_sq(table.size()), count(table.size());
   for (std::uint64_t u = 0; u < std::uint64_t{1} << 32; u += 4099) {
-    const auto s = table.sample(static_cast<std::uint32_t>(u));
-    ASSERT_GE(s.u_remapped, 0);
-    ASSERT_LT(s.u_remapped, 1);
-    sum[s.index] += s.u_remapped;
-    sum_sq[s.index] += s.u_remapped * s.u_remapped;
+    const auto s = sample(table, static_cast<std::uint32_t>(u));
+    ASSERT_GE(s.u_left, 0);
+    ASSERT_LT(s.u_left, 1);
+    sum[s.index] += s.u_left;
+    sum_sq[s.index] += s.u_left * s.u_left;
     ++count[s.index];
   }
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -124,8 +128,8 @@ TEST(AliasTable, one_entry) {
   const auto table = make_alias_table(std::vector<double>{0.3});
   EXPECT_EQ(table.pmf[0], 1);
   for (const std::uint32_t u : {0u, 1u, 0x80000000u, 0xFFFFFFFFu}) {
-    EXPECT_EQ(table.sample(u).index, 0u);
-    EXPECT_LT(table.sample(u).u_remapped, 1);
+    EXPECT_EQ(sample(table, u).index, 0u);
+    EXPECT_LT(sample(table, u).u_left, 1);
   }
 }
 

@@ -76,9 +76,9 @@ TEST_F(EnvmapFile, MayHaveAnyContrast) {
   const LoadedScene loaded = load(image);
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const LightSample<float> sample =
-        loaded.scene.lights.sample<float>(0, 1, {0, 0, 0}, {i << 22, i * 2654435761u}, true);
+        loaded.scene.lights.sample<float>(0, 1, Receiver<float>{}, {i << 22, i * 2654435761u}, true);
     ASSERT_TRUE(sample.is_there);
-    ASSERT_TRUE(std::isfinite(sample.radiance_over_pdf.g) && std::isfinite(sample.pdf_solid_angle()));
+    ASSERT_TRUE(std::isfinite(sample.radiance_over_pdf.g) && std::isfinite(sample.pdf_solid_angle));
   }
 }
 

@@ -62,7 +62,7 @@ TEST_P(Replay, SaysHowTheRadianceCameAbout) {
   settings.integrator = integrator_from_name(GetParam());
   settings.samples_per_pixel = 64;
   settings.replicates = 2;
-  const PathRules rules = settings.integrator.rules;
+  const PathRules& rules = *settings.integrator.path_rules();
   for (int index = 0; index < 32; ++index) {
     const SampleTrace trace = replay(loaded.scene, settings, {1, 1, 1, index});
     EXPECT_NEAR(trace.x_px, 1.5, 2.5);
@@ -71,8 +71,8 @@ TEST_P(Replay, SaysHowTheRadianceCameAbout) {
     ASSERT_FALSE(trace.vertices.empty());
     const SampleTrace::Vertex& first = trace.vertices.front();
     ASSERT_TRUE(first.surface);
-    EXPECT_EQ(first.light_sample.has_value(), rules.has_light_samples());
-    EXPECT_EQ(first.bsdf_sample.has_value(), rules.is_followed(0));
+    EXPECT_EQ(first.light_sample.has_value(), rules.light_samples() != nullptr);
+    EXPECT_EQ(first.bsdf_sample.has_value(), rules.bsdf_samples(0) > 0);
     if (first.surface->geometry == 0) {
       EXPECT_NEAR(first.position.z, 0, 1e-6);
     }
@@ -103,7 +103,7 @@ TEST(ReplayOfSeveralBsdfSamples, NumbersVerticesAndBranches) {
   const LoadedScene loaded = small_scene();
   RenderSettings settings;
   settings.integrator = integrator_from_name("direct_mis");
-  settings.integrator.rules.bsdf_samples = 3;
+  settings.integrator.rules = PathRules::direct(ByBoth{.bsdf_samples = 3});
   settings.samples_per_pixel = 8;
   settings.replicates = 1;
   const SampleTrace trace = replay(loaded.scene, settings, {1, 1, 0, 0});
@@ -132,7 +132,7 @@ TEST(ReplayOfSeveralBsdfSamples, EachHasAFreeFlightOfItsOwn) {
       "<translate value='-20 -20 -20'/></transform></medium>");
   RenderSettings settings;
   settings.integrator = integrator_from_name("direct_mis");
-  settings.integrator.rules.bsdf_samples = 4;
+  settings.integrator.rules = PathRules::direct(ByBoth{.bsdf_samples = 4});
   settings.samples_per_pixel = 32;
   settings.replicates = 1;
   int scattered = 0;

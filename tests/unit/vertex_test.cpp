@@ -6,7 +6,6 @@
 #include "support/program.h"
 
 #include <gtest/gtest.h>
-#include <memory>
 
 namespace etendue {
 namespace {
@@ -20,11 +19,8 @@ Vec3f shading_normal(float u, float v) {
                    "<scene><camera type='perspective'/><mesh type='obj'><string name='filename' "
                    "value='m.obj'/></mesh></scene>");
   const LoadedScene loaded = load_scene(read_nori_xml(folder.path() / "s.xml"));
-  const auto hits = std::make_unique<HitColumns>();
-  hits->u[0] = u;
-  hits->v[0] = v;
-  store_lanes(hits->ng, 0, Vec3f{0, 0, 1});
-  const HitNormals<float> normals(loaded.scene, *hits, 0, true);
+  const HitNormals<float> normals(
+      loaded.scene, {.t = 1, .barycentric = {u, v}, .ng = {0, 0, 1}, .geometry = 0, .primitive = 0}, true);
   EXPECT_EQ(normals.ng, (Vec3f{0, 0, 1}));
   return normals.ns;
 }

@@ -130,14 +130,14 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   all["split_unit"] = {{unit()}};
   // Coordinates of a few metres; normals are sums of products. A sphere's normal has the square root of what
   // is left of 1 - cos^2.
-  all["Lights::sample_position"] = {
+  all["Lights::sample end"] = {
       {word_below(lights), real(-4, 4), real(-4, 4), real(0, 1.2f), any_word()}, 60, 1};
   // The cosine at the edge of a sphere is a difference of nearly equal numbers.
-  all["Lights::pdf_area"] = {
+  all["Lights::pdf_solid_angle"] = {
       {word_below(lights), real(-4, 4), real(-4, 4), real(0, 1.2f), any_word()}, 30, 1};
   // A receiver near a light's plane: the cosine, hundreds of times smaller than the products it is summed
   // from, divides. No edges: at a sphere's very rim rounding decides whether it is seen.
-  all["sample_lights"] = {
+  all["sample of a uniform light"] = all["sample of a light by power"] = {
       {real(-4, 4), real(-4, 4), real(0, 1.2f), [](std::mt19937& random) { return std::uint32_t(random()); }},
       4000,
       10};

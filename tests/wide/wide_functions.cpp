@@ -5,9 +5,11 @@
 #include "base/frame.h"
 #include "base/split_unit.h"
 #include "base/warp.h"
+#include "bsdf/bsdf.h"
 #include "geometry/surface_uv.h"
-#include "integrator/light_sampling.h"
-#include "integrator/path_rules.h"
+#include "integrator/weights.h"
+#include "lightsampler/light_sampler.h"
+#include "scene/scene.h"
 
 #include <iterator>
 
@@ -177,32 +179,44 @@ void bsdf_sample(const Scene& scene, Packet& p) {
 
 void textures(const Scene& scene, Packet& p) {
   const Vec2<F> uv = p.square();
-  for (const Material& material : scene.materials)
-    if (has_texture(material)) p.give(std::get<Diffuse>(material).at(uv, every_lane()).albedo);
+  for (std::int32_t id = 0; id < scene.materials.count(); ++id)
+    if (has_texture(scene.materials[id]))
+      p.give(std::get<Diffuse>(scene.materials[id]).at(uv, every_lane()).albedo);
 }
 void inverse_error_function(const Scene&, Packet& p) { p.give(inverse_erf(p.real())); }
 void split(const Scene&, Packet& p) { p.give(split_unit(p.real())); }
 
-void light_position(const Scene& scene, Packet& p) {
-  const I light = as_int(p.word());
-  const Vec3<F> reference = p.vec();
-  const LightPoint<F> point = scene.lights.sample_position<F>(light, reference, p.words(), every_lane());
-  p.give(point.position), p.give(point.ng);
+Receiver<F> receiver_at(const Vec3<F>& position) {
+  const Vec3<F> up{F(0), F(0), F(1)};
+  return {position, up, up, I(lit_side::front)};
 }
-void light_pdf(const Scene& scene, Packet& p) {
-  const I light = as_int(p.word());
-  const Vec3<F> reference = p.vec();
-  const LightPoint<F> point = scene.lights.sample_position<F>(light, reference, p.words(), every_lane());
-  p.give(point.pdf_area);
-  p.give(scene.lights.pdf_area<F>(light, reference, point.position, point.ng, every_lane()));
-}
-void lights_sample(const Scene& scene, Packet& p) {
-  const Vec3<F> reference = p.vec();
-  const LightSample<F> sample = sample_lights<F>(scene, reference, p.words(), every_lane());
+void give_sample(Packet& p, const LightSample<F>& sample) {
   const Vec3<F> none{F(0), F(0), F(0)};
   p.give(select(sample.is_there, sample.wi, none));
   p.give(select(sample.is_there, sample.radiance_over_pdf, Color<F>{F(0), F(0), F(0)}));
-  p.give(select(sample.is_there, sample.pdf_solid_angle(), F(0)));
+  p.give(select(sample.is_there, sample.pdf_solid_angle, F(0)));
+}
+void light_end(const Scene& scene, Packet& p) {
+  const I light = as_int(p.word());
+  const Receiver<F> receiver = receiver_at(p.vec());
+  p.give(scene.lights.sample<F>(light, F(1), receiver, p.words(), every_lane()).end);
+}
+/// The density that a hit where a sample ends has, by the normal that sphere and planes have there.
+void light_pdf(const Scene& scene, Packet& p) {
+  const I light = as_int(p.word());
+  const Receiver<F> receiver = receiver_at(p.vec());
+  const LightSample<F> sample = scene.lights.sample<F>(light, F(1), receiver, p.words(), every_lane());
+  const LightHit<F> hit{sample.end, -sample.wi, sample.wi, I(0)};
+  p.give(select(sample.is_there, scene.lights.pdf_solid_angle<F>(light, F(1), receiver, hit, every_lane()),
+                F(0)));
+}
+template <class Sampler>
+void lights_sample(const Scene& scene, Packet& p) {
+  const Receiver<F> receiver = receiver_at(p.vec());
+  const Vec2<U> u = p.words();
+  const LightChoice<F> choice = Sampler(scene.lights).template choose<F>(receiver, u.x, 0);
+  give_sample(p,
+              scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u.y}, every_lane()));
 }
 
 void environment(const Scene& scene, Packet& p) {
@@ -210,16 +224,16 @@ void environment(const Scene& scene, Packet& p) {
   Color<F> radiance{F(0), F(0), F(0)};
   F pdf(0);
   for (std::int32_t k = 0; k < scene.lights.infinite_count(); ++k) {
-    radiance = radiance + environment_radiance<F>(scene, k, direction, every_lane());
-    pdf = pdf + environment_pdf_solid_angle<F>(scene, k, direction, every_lane());
+    radiance = radiance + scene.lights.infinite_radiance<F>(k, direction, every_lane());
+    pdf = pdf + scene.lights.infinite_pdf_solid_angle<F>(k, direction, every_lane());
   }
   p.give(radiance), p.give(pdf);
 }
 
-template <DirectLight combination>
+template <Heuristic heuristic>
 void weight(const Scene&, Packet& p) {
   const F own = p.real(), other = p.real();
-  p.give(mis_weight(combination, own, other));
+  p.give(mis_weight(heuristic, own, other));
 }
 
 constexpr WideFunction functions[]{
@@ -277,12 +291,13 @@ constexpr WideFunction functions[]{
     {"textures", 2, 9, Words::floats, run<textures>},
     {"inverse_erf", 1, 1, Words::floats, run<inverse_error_function>},
     {"split_unit", 1, 2, Words::integers, run<split>},
-    {"Lights::sample_position", 6, 6, Words::floats, run<light_position>},
-    {"Lights::pdf_area", 6, 2, Words::floats, run<light_pdf>},
-    {"sample_lights", 5, 7, Words::floats, run<lights_sample>},
+    {"Lights::sample end", 6, 3, Words::floats, run<light_end>},
+    {"Lights::pdf_solid_angle", 6, 1, Words::floats, run<light_pdf>},
+    {"sample of a uniform light", 5, 7, Words::floats, run<lights_sample<UniformLights>>},
+    {"sample of a light by power", 5, 7, Words::floats, run<lights_sample<PowerLights>>},
     {"environment", 3, 4, Words::floats, run<environment>},
-    {"mis_weight balance", 2, 1, Words::floats, run<weight<DirectLight::balance>>},
-    {"mis_weight power", 2, 1, Words::floats, run<weight<DirectLight::power>>},
+    {"mis_weight balance", 2, 1, Words::floats, run<weight<Heuristic::balance>>},
+    {"mis_weight power", 2, 1, Words::floats, run<weight<Heuristic::power>>},
 };
 
 }  // namespace

@@ -1,0 +1,66 @@
+// One sample of the lights at a vertex: choose a light, sample it, scatter its light, weigh it.
+#pragma once
+
+#include "base/frame.h"
+#include "integrator/vertex.h"
+#include "integrator/weights.h"
+#include "lightsampler/light_sampler.h"
+
+namespace etendue {
+
+template <class F>
+struct DirectLightSample {
+  LightSample<F> light;
+  Vec3<F> origin, along;     ///< The shadow segment: where it starts, and from there to the light (m).
+  Color<F> unshadowed;       ///< Radiance towards `wo`, weighted, where nothing hides the light.
+  Mask<F> needs_shadow_ray;  ///< Elsewhere it adds nothing, hidden or not.
+};
+
+/// The light that reaches the vertices straight from a light, by one sample of the lights: what course
+/// handouts call `sampleLights`, with the BSDF, the cosine and the weight that they leave to `Li`.
+/// \param bsdf_samples that leave the vertex beside \param u_light chooses the light and places the point
+/// \param pass of the light sampler's passes
+template <class F>
+DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler& light_sampler,
+                                         const PathRules& rules, int bsdf_samples, const Vertex<F>& vertex,
+                                         const Vec2<UInt<F>>& u_light, std::int32_t pass) {
+  // Choose a light.
+  const Receiver<F> receiver = vertex.receiver(scene);
+  const LightChoice<F> choice = light_sampler.choose<F>(receiver, u_light.x, pass);
+
+  // Sample it: a point (`samplePosition`) or a direction, its radiance over its density
+  // (`LuminaireQueryRecord`, `pdf`), the geometry term but for the receiver's cosine.
+  DirectLightSample<F> sample;
+  sample.light =
+      scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u_light.y}, vertex.is_there);
+
+  // Scatter it: BSDF times cosine, on the sides of the surface that agree with its shading normal.
+  const Frame<F> frame(vertex.ns);
+  const Vec3<F> wo_local = frame.local_from_world(vertex.wo),
+                wi_local = frame.local_from_world(sample.light.wi);
+  const Mask<F> is_lit =
+      mask_and(sample.light.is_there, vertex.is_consistent(wo_local.z, wi_local.z, sample.light.wi));
+  const F cosine = vertex.foreshortening(wi_local.z);
+  const float light_samples = float(rules.light_samples()->count);
+  Color<F> scattered = black<F>();
+  for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
+    // Weigh it: against the chance that a BSDF sample finds the same light.
+    const F weight = light_sample_weight<F>(
+        rules, select(lanes, sample.light.pdf_solid_angle, F(1)) * F(light_samples),
+        [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(float(bsdf_samples)); });
+    const Color<F> f = bsdf.eval(wo_local, wi_local);
+    scattered = select(lanes, f * sample.light.radiance_over_pdf * (cosine * weight), scattered);
+  });
+  if (light_samples > 1) scattered = scattered * F(1 / light_samples);
+
+  // What may hide it: shapes along the shadow segment (`V`), and the medium, which dims it.
+  sample.origin = vertex.offset_origin(sample.light.wi);
+  sample.along = sample.light.end - sample.origin;
+  if (scene.medium) scattered = scattered * scene.medium->transmittance(sample.origin, sample.along);
+  sample.unshadowed = scattered;
+  // Not "greater than 0": a NaN must reach the sum, where it is reported.
+  sample.needs_shadow_ray = mask_and(is_lit, mask_not(is_black(scattered)));
+  return sample;
+}
+
+}  // namespace etendue

@@ -1,0 +1,18 @@
+// The place that light is to reach: what the choice of a light, and the sampling of one, may look at.
+#pragma once
+
+#include "base/lane_vec.h"
+#include "bsdf/lit_side.h"
+
+namespace etendue {
+
+/// A vertex of a path as lights see it. A path keeps that of its last vertex until its next ray has met a
+/// light, so that both densities of a weight are computed from the same place.
+template <class F>
+struct Receiver {
+  Vec3<F> position;  ///< World, m.
+  Vec3<F> ng, ns;    ///< Unit; geometric and shading normal, in a medium towards the viewer.
+  Int<F> lit_sides;  ///< Of `lit_side`.
+};
+
+}  // namespace etendue

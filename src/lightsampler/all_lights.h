@@ -1,0 +1,29 @@
+// Which light: each of them, one after the other; a light sample is the sum of one of each.
+#pragma once
+
+#include "light/light.h"
+#include "lightsampler/light_choice.h"
+
+namespace etendue {
+
+class AllLights {
+ public:
+  explicit AllLights(const Lights& lights) : count_(lights.count()) {}
+
+  std::int32_t passes() const { return count_; }
+
+  template <class F>
+  LightChoice<F> choose(const Receiver<F>& /*receiver*/, const UInt<F>& u, std::int32_t pass) const {
+    return {Int<F>(pass), u, F(1)};
+  }
+
+  template <class F>
+  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& /*light*/, const Int<F>& /*primitive*/) const {
+    return F(1);
+  }
+
+ private:
+  std::int32_t count_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,50 @@
+#include "lightsampler/light_sampler.h"
+
+#include <algorithm>
+
+namespace etendue {
+
+namespace {
+
+struct Row {
+  std::string_view name, meaning;
+  LightSampler (*make)(const Lights&);
+};
+
+template <class Sampler>
+LightSampler make(const Lights& lights) {
+  return LightSampler(Sampler(lights));
+}
+
+constexpr Row table[]{
+    {"uniform", "One light, all alike.", make<UniformLights>},
+    {"power", "One light, in proportion to its power.", make<PowerLights>},
+    {"all", "Every light: a light sample is one sample of each, added up.", make<AllLights>},
+};
+
+const Row& row_named(std::string_view name) {
+  const auto* found =
+      std::find_if(std::begin(table), std::end(table), [&](const Row& row) { return row.name == name; });
+  if (found == std::end(table)) throw unknown_plugin("light sampler", name, light_sampler_plugins());
+  return *found;
+}
+
+}  // namespace
+
+const std::vector<Plugin>& light_sampler_plugins() {
+  static const std::vector<Plugin> plugins = [] {
+    std::vector<Plugin> made;
+    for (const Row& row : table)
+      made.push_back({"light sampler", std::string(row.name), std::string(row.meaning), {}, {}});
+    return made;
+  }();
+  return plugins;
+}
+
+std::string_view known_light_sampler(std::string_view name) { return row_named(name).name; }
+
+LightSampler make_light_sampler(std::string_view name, const Lights& lights) {
+  return row_named(name).make(lights);
+}
+
+}  // namespace etendue

@@ -1,0 +1,70 @@
+// Which light: chosen for a receiver, by the sampler that a render picks by its name.
+//
+// To add one: write lightsampler/NAME.h with a class as LightSamplerModel asks for; add it to the variant
+// below and a row to the table in light_sampler.cpp. tests/statistical/light_sampler_test.cpp goes through
+// that table.
+#pragma once
+
+#include "lightsampler/all_lights.h"
+#include "lightsampler/light_choice.h"
+#include "lightsampler/power_lights.h"
+#include "lightsampler/uniform_lights.h"
+#include "scenefile/parameters.h"
+
+#include <concepts>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace etendue {
+
+/// Made from the lights of a scene, of which there must be one; it may not outlive them.
+///   passes(): how many choices make one light sample; each of them is to be sampled, and they are added up.
+///   choose(receiver, u, pass): a light for the receiver, in pass 0 .. passes() - 1.
+///   pmf(receiver, light, primitive): the probability with which the passes choose this light, for a hit on
+///     this primitive of it (a triangle within a mesh); of a light that is chosen in every case, 1. Lanes
+///     that nobody asks for may hold any light that there is.
+template <class Sampler>
+concept LightSamplerModel = std::constructible_from<Sampler, const Lights&> &&
+                            requires(const Sampler& sampler, const Receiver<float>& receiver) {
+                              { sampler.passes() } -> std::same_as<std::int32_t>;
+                              {
+                                sampler.template choose<float>(receiver, 0u, 0)
+                              } -> std::same_as<LightChoice<float>>;
+                              { sampler.template pmf<float>(receiver, 0, 0) } -> std::same_as<float>;
+                            };
+
+/// One of the closed set, with the interface of LightSamplerModel.
+class LightSampler {
+ public:
+  template <LightSamplerModel Sampler>
+  explicit LightSampler(Sampler sampler) : sampler_(std::move(sampler)) {}
+
+  std::int32_t passes() const {
+    return std::visit([](const auto& sampler) { return sampler.passes(); }, sampler_);
+  }
+  template <class F>
+  LightChoice<F> choose(const Receiver<F>& receiver, const UInt<F>& u, std::int32_t pass) const {
+    return std::visit([&](const auto& sampler) { return sampler.template choose<F>(receiver, u, pass); },
+                      sampler_);
+  }
+  template <class F>
+  F pmf(const Receiver<F>& receiver, const Int<F>& light, const Int<F>& primitive) const {
+    return std::visit(
+        [&](const auto& sampler) { return sampler.template pmf<F>(receiver, light, primitive); }, sampler_);
+  }
+
+ private:
+  std::variant<UniformLights, PowerLights, AllLights> sampler_;
+};
+
+const std::vector<Plugin>& light_sampler_plugins();
+
+/// The name as it stands in the table, for as long as the program runs. Throws InputError with the known
+/// names.
+std::string_view known_light_sampler(std::string_view name);
+
+/// \param name of the table \param lights at least one
+LightSampler make_light_sampler(std::string_view name, const Lights& lights);
+
+}  // namespace etendue

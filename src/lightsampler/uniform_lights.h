@@ -1,0 +1,32 @@
+// Which light: one of n, all alike.
+#pragma once
+
+#include "light/light.h"
+#include "lightsampler/light_choice.h"
+
+namespace etendue {
+
+class UniformLights {
+ public:
+  explicit UniformLights(const Lights& lights)
+      : count_(std::uint32_t(lights.count())), pmf_(1.0f / float(lights.count())) {}
+
+  std::int32_t passes() const { return 1; }
+
+  template <class F>
+  LightChoice<F> choose(const Receiver<F>& /*receiver*/, const UInt<F>& u, std::int32_t /*pass*/) const {
+    const UInt<F> n(count_);
+    return {as_int(mul_hi(u, n)), u * n, F(pmf_)};
+  }
+
+  template <class F>
+  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& /*light*/, const Int<F>& /*primitive*/) const {
+    return F(pmf_);
+  }
+
+ private:
+  std::uint32_t count_;
+  float pmf_;
+};
+
+}  // namespace etendue
