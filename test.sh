@@ -4,16 +4,19 @@ set -euo pipefail
 
 usage() {
   cat <<'END'
-usage: ./test.sh [--release | --asan | --all] [-- CTEST_OPTION...]
+usage: ./test.sh [--release | --asan | --clang | --all] [-- CTEST_OPTION...]
 
-  (no option)  every test, optimised; the unit and errors tests once more under ASan and UBSan
+  (no option)  every test, optimised; once more the unit and errors tests under ASan and UBSan, and the unit tests
+               built by clang
   --release    every test, optimised; nothing else
   --asan       every test under AddressSanitizer and UndefinedBehaviorSanitizer; nothing else
-  --all        every test, both ways
+  --clang      the unit tests, built by clang; nothing else
+  --all        every test, optimised and under the sanitizers, and the unit tests built by clang
 
 What follows -- goes to ctest: ./test.sh --release -- -R Sphere
-Installs the Debian packages it needs where they are missing (scripts/setup.sh). Builds in build/release and
-build/asan with CMAKE_BUILD_PARALLEL_LEVEL jobs (default: one a core). Tests named asan.* are the sanitized ones.
+Installs the Debian packages it needs where they are missing (scripts/setup.sh). Builds in build/release,
+build/asan and build/clang with CMAKE_BUILD_PARALLEL_LEVEL jobs (default: one a core). Tests named asan.* are the
+sanitized ones, clang.* those built by clang.
 Ends with 0 where every test passed.
 END
 }
@@ -21,10 +24,12 @@ END
 every_kind="unit;statistical;image;errors;structure"
 release_kinds=$every_kind
 asan_kinds="unit;errors"
+clang_kinds="unit"
 while [ $# -gt 0 ]; do
   case $1 in
-    --release) asan_kinds="" ;;
-    --asan) release_kinds="" asan_kinds=$every_kind ;;
+    --release) asan_kinds="" clang_kinds="" ;;
+    --asan) release_kinds="" asan_kinds=$every_kind clang_kinds="" ;;
+    --clang) release_kinds="" asan_kinds="" ;;
     --all) asan_kinds=$every_kind ;;
     -h | --help) usage; exit 0 ;;
     --) shift; break ;;
@@ -34,7 +39,9 @@ while [ $# -gt 0 ]; do
 done
 
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
-scripts/setup.sh build
+groups=(build)
+[ -z "$clang_kinds" ] || groups+=(clang)
+scripts/setup.sh "${groups[@]}"
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 
 # build PRESET KINDS: builds it with these kinds of tests.
@@ -46,12 +53,14 @@ build() {
 
 [ -z "$release_kinds" ] || build release "$release_kinds"
 [ -z "$asan_kinds" ] || build asan "$asan_kinds"
+[ -z "$clang_kinds" ] || build clang "$clang_kinds"
 
 # One list of tests over the builds, so that one summary speaks for all.
 mkdir -p build/check
 {
   [ -z "$release_kinds" ] || echo 'subdirs([==['"$PWD"'/build/release]==])'
   [ -z "$asan_kinds" ] || echo 'subdirs([==['"$PWD"'/build/asan]==])'
+  [ -z "$clang_kinds" ] || echo 'subdirs([==['"$PWD"'/build/clang]==])'
 } >build/check/CTestTestfile.cmake
 printf '\n== test\n'
 exec ctest --test-dir build/check --output-on-failure --no-tests=error --parallel "$jobs" "$@"

@@ -11,13 +11,7 @@ function(etendue_add_modules name source)
   foreach(level scalar v2 v3 v4)
     set(target etendue_${name}_${level})
     add_library(${target} MODULE ${source})
-    target_compile_options(${target} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math
-      $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized;-Wno-maybe-uninitialized>)  # GCC 12's own AVX-512 headers warn
-    if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug" AND NOT ETENDUE_SANITIZE)
-      # A kernel's stages are long chains of small functions on registers: a call would spill them all.
-      target_compile_options(${target} PRIVATE -O3
-        $<$<CXX_COMPILER_ID:GNU>:-finline-limit=100000;--param=inline-unit-growth=2000;--param=large-function-growth=10000;--param=max-inline-insns-auto=1000;--param=large-function-insns=100000;--param=large-stack-frame-growth=10000;--param=early-inlining-insns=1000;--param=max-inline-insns-single=2000>)
-    endif()
+    target_compile_options(${target} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math)
     target_compile_definitions(${target} PRIVATE ETENDUE_ISA_NAME="${level}")
     set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
       BUILD_RPATH "$ORIGIN")
@@ -29,3 +23,14 @@ function(etendue_add_modules name source)
   endforeach()
 endfunction()
 
+# etendue_inline_stages(NAME): a kernel's stages are long chains of small functions on registers, and a call would spill
+# them all. It costs compile time, so it is for what renders.
+function(etendue_inline_stages name)
+  if(CMAKE_BUILD_TYPE STREQUAL "Debug" OR ETENDUE_SANITIZE)
+    return()
+  endif()
+  foreach(level scalar v2 v3 v4)
+    target_compile_options(etendue_${name}_${level} PRIVATE -O3
+      $<$<CXX_COMPILER_ID:GNU>:-finline-limit=100000;--param=inline-unit-growth=2000;--param=large-function-growth=10000;--param=max-inline-insns-auto=1000;--param=large-function-insns=100000;--param=large-stack-frame-growth=10000;--param=early-inlining-insns=1000;--param=max-inline-insns-single=2000>)
+  endforeach()
+endfunction()

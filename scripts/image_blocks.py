@@ -185,10 +185,8 @@ def variance_by_size(told, sums_of_squares, sums, mean, samples):
     return np.where(can_be_short, np.maximum(told, (size * mean - mean ** 2) / samples), told)
 
 
-def compare(ours, reference, level, least_brightness=0.0, rim_of=None):
-    """Two `Picture`s, ours with standard errors. `level`: how often pictures that agree may be told to disagree.
-    `least_brightness`: blocks in which we are darker are left out, of the whole picture too; so are those with pixels
-    on both sides of the radiance `rim_of`."""
+def compare(ours, reference, level):
+    """Two `Picture`s, ours with standard errors. `level`: how often pictures that agree may be told to disagree."""
     def inner(pixels):
         return pixels[RIM_PX:-RIM_PX, RIM_PX:-RIM_PX].astype(np.float64)
 
@@ -225,15 +223,9 @@ def compare(ours, reference, level, least_brightness=0.0, rim_of=None):
                                           for v in (reference_told, reference_variance))
 
     total = ours_variance + reference_variance + rounding
-    brightest = pixels.max(axis=2, keepdims=True)
-    is_compared = block_sums(brightest, BLOCK) / counts >= least_brightness
-    if rim_of is not None:
-        share_above = block_sums((brightest >= rim_of).astype(float), BLOCK) / counts
-        is_compared = is_compared & ((share_above == 0) | (share_above == 1))
     difference = block_sums(pixel_difference, BLOCK) / counts
-    z = np.where(is_compared, z_of(difference, total), 0)
-    area = np.where(is_compared, counts, 0)
-    area = area / area.sum(axis=(0, 1))
+    z = z_of(difference, total)
+    area = counts / counts.sum(axis=(0, 1))
     whole = np.sum(area * difference, axis=(0, 1))
     whole_reference = np.sum(area * block_sums(reference_pixels, BLOCK) / counts, axis=(0, 1))
     whole_variance = np.sum(area ** 2 * (ours_told + reference_told), axis=(0, 1))

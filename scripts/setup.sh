@@ -13,7 +13,8 @@ names what to install.
 
 groups: build    compilers, libraries, test framework
         report   what demo.sh's page needs
-        develop  clang, clang-format, clang-tidy
+        clang    the second compiler
+        develop  clang-format, clang-tidy, what fuzzing needs besides clang
 END
 }
 

@@ -6,6 +6,16 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+
+// GCC 12 takes what its AVX-512 header leaves undefined on purpose (_mm512_undefined_ps) for a mistake of
+// ours.
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#include <immintrin.h>
+#pragma GCC diagnostic pop
+#endif
 #include <xsimd/xsimd.hpp>
 
 namespace etendue {

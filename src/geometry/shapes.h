@@ -1,4 +1,8 @@
 // Shapes that a scene names without a file.
+//
+// To add one made of triangles: make its mesh here, and give it its plugin description and its case in
+// scene/load_shape.cpp. An exact one, as sphere and disk are, needs a column in geometry.h too, its rays in
+// raycast_embree.cpp and, if it may shine, a kind of light (light/light.h).
 #pragma once
 
 #include "geometry/geometry.h"

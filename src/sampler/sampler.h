@@ -1,4 +1,8 @@
 // Random numbers as a pure function of (seed, pixel, replicate, index, dimension).
+//
+// To add a sampler: give it a SamplerKind, its name and its plugin description in sampler.cpp, and its case
+// in sample_2d, a file of its own for its points; add it to docs/scene_format.md and to
+// tests/statistical/sampler_test.cpp.
 #pragma once
 
 #include "base/hash.h"

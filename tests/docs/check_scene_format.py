@@ -4,8 +4,11 @@
 usage: check_scene_format.py ETENDUE PAGE   compare the page with what the program says of itself
        check_scene_format.py --self-test     plant one difference of each kind and see it found
 
-Compared: every plugin of every family, every parameter of it, its type, default and unit. In the page a family is a
-heading `## Name`, a plugin in it `### `name``, its parameters a table `| parameter | type | default | unit | meaning |`.
+Compared: every plugin of every family, every parameter of it, its type, default and unit; and what the integrators'
+names stand for, which a render of one pixel tells. In the page a family is a heading `## Name`, a plugin in it `###
+`name``, its parameters a table `| parameter | type | default | unit | meaning |`. Under an integrator that is another
+name of one, that one is named. A row of the table of dialects (its head has all their names) that names integrators
+first names, first in each other cell, what they stand for there. Other words may be any.
 """
 
 import copy
@@ -13,10 +16,16 @@ import json
 import re
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 FAMILIES = ["integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "media", "phases", "lights",
             "tests"]
 HEAD = ["parameter", "type", "default", "unit", "meaning"]
+DIALECTS = ["nori-2012", "nori-eth", "nori"]
+SCENE = """<scene><integrator type="{}"/>
+<camera type="perspective"><integer name="width" value="1"/><integer name="height" value="1"/></camera>
+<shape type="sphere"><emitter type="area"/></shape></scene>"""
 
 
 def plugins_of_page(text):
@@ -33,7 +42,7 @@ def plugins_of_page(text):
             if plugin in found:
                 twice.append(f"{family}: '{heading[1]}' has two headings")
             found[plugin] = {}
-        cells = [cell.strip() for cell in line.strip().strip("|").split("|")] if line.startswith("|") else []
+        cells = cells_of(line) if line.startswith("|") else []
         if not cells or not plugin:
             is_in_table = False
         elif cells == HEAD:
@@ -83,6 +92,65 @@ def compare(text, info):
                         if a != b:
                             differences.append(f"{of}: the page has the {what} '{a}', the program '{b}'")
     return differences
+
+
+def cells_of(line):
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+
+
+def quoted(text):
+    """The names in `quotes`."""
+    return re.findall(r"`([^`]+)`", text)
+
+
+def compare_meanings(text, meanings):
+    """A line for each integrator's name that the page says to stand for another than it does.
+    `meanings`: {name: {dialect: the integrator that it stands for}}."""
+    differences, stated, sections = [], {}, {}
+    dialects = family = name = None
+    for line in text.splitlines():
+        if line.startswith("## "):
+            family, name = line[3:].strip().lower(), None
+        elif family == "integrators" and (heading := re.fullmatch(r"### `([^`]+)`\s*", line)):
+            name = heading[1]
+        elif name:
+            sections.setdefault(name, []).extend(quoted(line))
+        if not line.startswith("|"):
+            dialects = None
+            continue
+        head, *rest = cells_of(line)
+        if sorted(found[0] for cell in rest if (found := quoted(cell))) == sorted(DIALECTS):
+            dialects = [quoted(cell)[0] for cell in rest]
+        elif dialects:
+            for integrator in quoted(head):
+                if integrator in meanings:
+                    stated[integrator] = dict(zip(dialects, (next(iter(quoted(cell)), "") for cell in rest)))
+    for integrator, there in sorted(meanings.items()):
+        means = set(there.values())
+        if len(means) > 1 and integrator not in stated:
+            differences.append(f"integrators: '{integrator}' is missing from the table of dialects")
+        for dialect, here in stated.get(integrator, {}).items():
+            if here != there[dialect]:
+                differences.append(f"integrators: in {dialect} '{integrator}' stands for '{there[dialect]}', "
+                                   f"not '{here}'")
+        for canonical in means - {integrator} - set(sections.get(integrator, [])):
+            differences.append(f"integrators: '{integrator}' stands for '{canonical}', which its section does not name")
+    return differences
+
+
+def meanings_of_program(etendue, info):
+    """{name: {dialect: what --stats calls the integrator}}, of those that need no parameters."""
+    with tempfile.TemporaryDirectory() as name:
+        scene, stats = Path(name) / "scene.xml", Path(name) / "stats.json"
+
+        def meaning(integrator, dialect):
+            scene.write_text(SCENE.format(integrator))
+            subprocess.run([etendue, "render", scene, "--dialect", dialect, "--spp", "1", "--stats", stats, "--quiet",
+                            "-o", Path(name) / "image.exr"], check=True, capture_output=True)
+            return json.loads(stats.read_text())["integrator"]
+
+        return {plugin["name"]: {dialect: meaning(plugin["name"], dialect) for dialect in DIALECTS}
+                for plugin in info["integrators"] if not any(p["is_required"] for p in plugin["parameters"])}
 
 
 PAGE = """
@@ -139,16 +207,46 @@ PLANTED = [
     ("a family unknown", PAGE, INFO | {"moods": [{"name": "a", "parameters": []}]}, "moods: a family"),
 ]
 
+MEANINGS_PAGE = """
+| what | `nori-2012` | `nori-eth` | `nori` |
+|---|---|---|---|
+| film x | right | right | left |
+| integrators `direct`, `path` | `bsdf` by chance | `all` of `direct` | as `bsdf` |
+## Integrators
+### `direct`
+As `bsdf`, or as `all`.
+### `path`
+As `all` and `bsdf`.
+### `ems`
+Another name, of `bsdf`.
+"""
+DIRECT = {"nori-2012": "bsdf", "nori-eth": "all", "nori": "bsdf"}
+MEANINGS = {"direct": DIRECT, "path": DIRECT, "ems": dict.fromkeys(DIALECTS, "bsdf"),
+            "bsdf": dict.fromkeys(DIALECTS, "bsdf")}
+# The same for what the integrators' names stand for.
+PLANTED_MEANINGS = [
+    ("no meaning", MEANINGS_PAGE, MEANINGS, None),
+    ("another sentence", MEANINGS_PAGE.replace("Another name, of", "Anther nmae off"), MEANINGS, None),
+    ("a wrong meaning", MEANINGS_PAGE.replace("| `all` of", "| `light` of"), MEANINGS, "stands for 'all', not 'light'"),
+    ("a meaning that is not named", MEANINGS_PAGE.replace("as `bsdf` |", "as before |"), MEANINGS, "'bsdf', not ''"),
+    ("an alias of another", MEANINGS_PAGE.replace("of `bsdf`.", "of `all`."), MEANINGS, "'ems' stands for 'bsdf', wh"),
+    ("a row missing", MEANINGS_PAGE.replace(", `path` |", " |"), MEANINGS, "'path' is missing from the table"),
+    ("no table", MEANINGS_PAGE.replace("`nori-eth`", "nori-eth"), MEANINGS, "'direct' is missing from the table"),
+    ("another meaning in the program", MEANINGS_PAGE, MEANINGS | {"path": dict.fromkeys(DIALECTS, "bsdf")},
+     "in nori-eth 'path' stands for 'bsdf', not 'all'"),
+]
+
 
 def self_test():
     failures = 0
-    for name, page, info, expected in PLANTED:
-        found = compare(page, info)
+    cases = [(compare, *case) for case in PLANTED] + [(compare_meanings, *case) for case in PLANTED_MEANINGS]
+    for compared, name, page, told, expected in cases:
+        found = compared(page, told)
         if any(expected in line for line in found) if expected else not found:
             continue
         failures += 1
         print(f"FAILED {name}: expected {expected!r}, found {found}")
-    print(f"{len(PLANTED) - failures} of {len(PLANTED)} planted cases judged rightly")
+    print(f"{len(cases) - failures} of {len(cases)} planted cases judged rightly")
     return failures
 
 
@@ -159,8 +257,8 @@ def main(arguments):
         print(__doc__, file=sys.stderr)
         return 2
     said = subprocess.run([arguments[0], "info", "--json"], capture_output=True, text=True, check=True)
-    with open(arguments[1], encoding="utf-8") as page:
-        differences = compare(page.read(), json.loads(said.stdout))
+    info, page = json.loads(said.stdout), Path(arguments[1]).read_text(encoding="utf-8")
+    differences = compare(page, info) + compare_meanings(page, meanings_of_program(arguments[0], info))
     for line in differences:
         print(f"{arguments[1]}: {line}")
     print(f"{len(differences)} differences")
