@@ -1,8 +1,11 @@
-// From an OBJ file to the first pixels: where the time goes, for a mesh of a million triangles.
+// From files to the first pixels: where the time goes, for a mesh of a million triangles and for 200,000
+// shapes, and the memory of the latter.
 
 #include "geometry/obj_reader.h"
 #include "geometry/raycast.h"
 #include "render/kernel.h"
+#include "scene/load_scene.h"
+#include "scenefile/nori_xml.h"
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -10,8 +13,12 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <malloc.h>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -50,19 +57,116 @@ double read_seconds(const std::filesystem::path& file, Mesh& mesh) {
   return seconds_since(start);
 }
 
+/// 32x32 pixels, one sample each.
+double first_pixels_seconds(const Scene& scene) {
+  RenderSettings settings;
+  settings.samples_per_pixel = 1;
+  settings.replicates = 1;
+  settings.isa = available_isas().back();
+  return render(scene, settings).seconds;
+}
+
+/// VmRSS or VmHWM of this process, in bytes.
+double memory(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (double kib; word == key + ":" && status >> kib) return 1024 * kib;
+  return 0;
+}
+
+/// Gives back what is free, so that growth is what is in use.
+double resident_bytes() {
+  malloc_trim(0);
+  return memory("VmRSS");
+}
+void restart_peak() {
+  resident_bytes();
+  std::ofstream("/proc/self/clear_refs") << 5;
+}
+
+/// A grid of `count` shapes, each as `shape(its place)` writes it, under a point light.
+template <class Function>
+void write_shapes(const std::filesystem::path& file, int count, const Function& shape) {
+  std::ofstream out(file);
+  out << "<scene><camera type=\"perspective\"><float name=\"fov\" value=\"40\"/>"
+         "<integer name=\"width\" value=\"32\"/><integer name=\"height\" value=\"32\"/><transform "
+         "name=\"toWorld\">"
+         "<lookat origin=\"0 60 60\" target=\"0 0 0\" up=\"0 1 0\"/></transform></camera>\n"
+         "<emitter type=\"point\"><point name=\"position\" value=\"0 50 0\"/></emitter>\n";
+  for (int i = 0; i < count; ++i)
+    out << shape(
+        fmt::format("<transform name=\"toWorld\"><scale value=\"0.04\"/><rotate axis=\"1 0 0\" "
+                    "angle=\"-90\"/><translate value=\"{:.3f} {:.3f} {:.3f}\"/></transform>",
+                    i % 500 * 0.1 - 25, 0.3 * std::sin(0.01 * i), i / 500 * 0.1 - 20));
+  out << "</scene>\n";
+}
+
+/// The same triangles as one mesh: what they cost however they are cut into shapes.
+double bytes_as_one_mesh(const Geometry& shapes) {
+  const double before = resident_bytes();
+  Geometry geometry;
+  {
+    Mesh mesh;
+    mesh.positions.assign(shapes.positions.begin(), shapes.positions.end() - 1);
+    mesh.indices.assign(shapes.indices.begin(), shapes.indices.end());
+    geometry.add_mesh(mesh, {0});
+  }
+  const RayCaster rays(geometry);
+  return resident_bytes() - before;
+}
+
+nlohmann::ordered_json measure_shapes(const std::string& what, const std::filesystem::path& file, int count) {
+  restart_peak();
+  const double before = memory("VmRSS");
+  const Clock::time_point start = Clock::now();
+  auto description = std::make_unique<const SceneDesc>(read_nori_xml(file));
+  const double parse_seconds = seconds_since(start);
+  const LoadedScene loaded = load_scene(*description);
+  const double render_seconds = first_pixels_seconds(loaded.scene), seconds = seconds_since(start);
+  const double peak = memory("VmHWM") - before;
+  description.reset();
+  const double scene = resident_bytes() - before;
+  return {{"scene", what},
+          {"shapes", count},
+          {"megabytes", 1e-6 * double(std::filesystem::file_size(file))},
+          {"seconds_xml", parse_seconds},
+          {"seconds_load", loaded.seconds_read},
+          {"seconds_embree", loaded.seconds_build},
+          {"seconds_first_pixels", render_seconds},
+          {"seconds", seconds},
+          {"materials", loaded.scene.materials.size()},
+          {"bytes_a_shape", scene / count},
+          {"bytes_a_shape_as_one_mesh", bytes_as_one_mesh(loaded.scene.geometry) / count},
+          {"peak_bytes_a_shape", peak / count}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Seconds from an OBJ file to the first pixels"};
+  CLI::App app{"Seconds from an OBJ file, and from scenes of many shapes, to the first pixels"};
   bool is_json = false;
-  int cells = 810;
+  int cells = 810, shapes = 200000;
   app.add_flag("--json", is_json, "JSON on standard output");
   app.add_option("--cells", cells, "The mesh has 2 cells^2 triangles")->capture_default_str();
+  app.add_option("--shapes", shapes, "How many shapes the scenes of many have")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / fmt::format("etendue-start-up-{}", getpid());
   std::filesystem::create_directory(folder);
+
+  // First, while the process is small: what it has once used and given back would be found again.
+  std::ofstream(folder / "triangle.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  write_shapes(folder / "rectangles.xml", shapes, [](const std::string& placed) {
+    return "<shape type=\"rectangle\">" + placed + "</shape>\n";
+  });
+  write_shapes(folder / "meshes.xml", shapes, [](const std::string& placed) {
+    return "<mesh type=\"obj\"><string name=\"filename\" value=\"triangle.obj\"/>" + placed + "</mesh>\n";
+  });
+  const std::vector<nlohmann::ordered_json> many{
+      measure_shapes("rectangles", folder / "rectangles.xml", shapes),
+      measure_shapes("meshes of one triangle", folder / "meshes.xml", shapes)};
+
   write_obj(folder / "flat.obj", cells, false);
   write_obj(folder / "smooth.obj", cells, true);
   const double megabytes = 1e-6 * double(std::filesystem::file_size(folder / "smooth.obj"));
@@ -94,11 +198,7 @@ int main(int argc, char** argv) {
                     .lights = std::move(lights),
                     .medium = std::nullopt,
                     .sampler = SamplerKind::sobol};
-  RenderSettings settings;
-  settings.samples_per_pixel = 1;
-  settings.replicates = 1;
-  settings.isa = available_isas().back();
-  const double render_seconds = render(scene, settings).seconds;
+  const double render_seconds = first_pixels_seconds(scene);
 
   const double total = smooth_seconds + build_seconds + render_seconds;
   const nlohmann::ordered_json json{{"triangles", mesh.triangle_count()},
@@ -107,7 +207,8 @@ int main(int argc, char** argv) {
                                     {"seconds_normals", smooth_seconds - flat_seconds},
                                     {"seconds_embree", build_seconds},
                                     {"seconds_first_pixels", render_seconds},
-                                    {"seconds", total}};
+                                    {"seconds", total},
+                                    {"many_shapes", many}};
   if (is_json) {
     fmt::print("{}\n", json.dump(2));
     return 0;
@@ -121,4 +222,13 @@ int main(int argc, char** argv) {
   share("vertex normals", smooth_seconds - flat_seconds);
   share("Embree's tree", build_seconds);
   share("first 32x32 pixels", render_seconds);
+  for (const auto& scene_of_many : many) {
+    const auto get = [&](const char* key) { return scene_of_many[key].get<double>(); };
+    fmt::print("{} {}, {:.0f} MB of XML: {:.2f} s to the first pixels\n", shapes,
+               scene_of_many["scene"].get<std::string>(), get("megabytes"), get("seconds"));
+    fmt::print("  reading the XML {:.2f} s, shapes {:.2f} s, Embree's tree {:.2f} s, pixels {:.2f} s\n",
+               get("seconds_xml"), get("seconds_load"), get("seconds_embree"), get("seconds_first_pixels"));
+    fmt::print("  bytes a shape: {:.0f}; as one mesh {:.0f}; at the peak, while reading, {:.0f}\n",
+               get("bytes_a_shape"), get("bytes_a_shape_as_one_mesh"), get("peak_bytes_a_shape"));
+  }
 }

@@ -3,9 +3,14 @@
 #include "base/error.h"
 #include "base/temporary_file.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
+#include <map>
+#include <optional>
+#include <sys/stat.h>
 #include <system_error>
+#include <utility>
 #include <variant>
 
 namespace etendue::app {
@@ -21,7 +26,15 @@ void add_files(const Object& object, const std::filesystem::path& directory,
   for (const Object& child : object.children) add_files(child, directory, files);
 }
 
-/// Also by another way to the same file.
+/// What all ways to an existing file have in common.
+using FileId = std::pair<dev_t, ino_t>;
+std::optional<FileId> id_of(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return std::nullopt;
+  return FileId{status.st_dev, status.st_ino};
+}
+
+/// Also by another way to the same file, be it there or not.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code error;
   const auto whole = [&](const std::filesystem::path& file) {
@@ -36,16 +49,23 @@ std::vector<std::filesystem::path> files_of(const SceneDesc& description,
                                             const std::filesystem::path& scene_file) {
   std::vector<std::filesystem::path> files{scene_file};
   add_files(description.root, description.directory, files);
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
 void check_overwrites_nothing(const std::vector<std::string>& written,
                               const std::vector<std::filesystem::path>& read) {
-  for (std::size_t i = 0; i < written.size(); ++i) {
+  // A file that is not there yet cannot be read; of the others there may be 200,000.
+  std::map<FileId, std::string> there;
+  for (const std::string& file : written)
+    if (const std::optional<FileId> id = id_of(file)) there.emplace(*id, file);
+  if (!there.empty())
     for (const std::filesystem::path& file : read)
-      if (is_same_file(written[i], file))
+      if (const std::optional<FileId> id = id_of(file); id && there.contains(*id))
         throw InputError(fmt::format(
-            "{}: this file would be overwritten, and it is read\nwrite to another name", written[i]));
+            "{}: this file would be overwritten, and it is read\nwrite to another name", there.at(*id)));
+  for (std::size_t i = 0; i < written.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k)
       if (is_same_file(written[i], written[k]))
         throw InputError(fmt::format(

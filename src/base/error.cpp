@@ -59,17 +59,41 @@ std::string single_line(std::string_view text) {
 
 bool has_text(const Location& where) { return where.source && !where.source->text.empty(); }
 
-std::size_t line_begin(const Location& where) {
+/// A place as a person counts.
+struct Place {
+  LineColumn at{1, 1};
+  std::size_t line_begin = 0;
+};
+
+/// Counts on from the place before where that is earlier in the same file: warnings come in the file's order,
+/// and thousands of them would read it from its start thousands of times.
+Place place_of(const Location& where) {
+  struct Mark {
+    std::weak_ptr<const SourceFile> source;
+    std::size_t offset = 0;
+    Place place;
+  };
+  thread_local Mark mark;
   const std::string_view text = where.source->text;
   const std::size_t offset = std::min(where.offset, text.size());
-  const std::size_t newline = offset == 0 ? std::string_view::npos : text.rfind('\n', offset - 1);
-  return newline == std::string_view::npos ? 0 : newline + 1;
+  if (mark.source.lock() != where.source || mark.offset > offset) mark = {where.source, 0, {}};
+  Place& place = mark.place;
+  while (mark.offset < offset) {
+    if (text[mark.offset] == '\n') {
+      place = {{place.at.line + 1, 1}, ++mark.offset};
+    } else {
+      mark.offset += std::max<std::size_t>(character_length(text.substr(mark.offset)), 1);
+      ++place.at.column;
+    }
+  }
+  return place;
 }
 
 /// The line of `where` and a line with the caret under it.
 std::string excerpt(const Location& where) {
   const std::string_view text = where.source->text;
-  const std::size_t begin = line_begin(where);
+  const Place place = place_of(where);
+  const std::size_t begin = place.line_begin;
   // Only what can be shown is laid out: a file of one line may have millions of characters.
   const std::size_t reach = 4 * excerpt_width;
   const std::size_t offset = std::min(where.offset, text.size());
@@ -101,7 +125,7 @@ std::string excerpt(const Location& where) {
   std::string shown;
   for (std::size_t i = from; i < to; ++i) shown += cells[i].shown;
 
-  const std::string number = std::to_string(line_and_column(where).line);
+  const std::string number = std::to_string(place.at.line);
   const std::size_t underlined =
       std::max<std::size_t>(std::min(caret_end, std::max(to, caret + 1)) - caret, 1);
   return fmt::format("  {} | {}{}{}\n  {} | {}^{}", number, front, shown, back,
@@ -134,14 +158,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 LineColumn line_and_column(const Location& where) {
-  if (!has_text(where)) return {0, 0};
-  const std::string_view text = where.source->text;
-  const std::size_t begin = line_begin(where);
-  const std::size_t offset = std::min(where.offset, text.size());
-  LineColumn at{1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + begin, '\n')), 1};
-  for (std::size_t byte = begin; byte < offset; ++at.column)
-    byte += std::max<std::size_t>(character_length(text.substr(byte)), 1);
-  return at;
+  return has_text(where) ? place_of(where).at : LineColumn{0, 0};
 }
 
 std::string format_message(const Location& where, std::string_view problem, std::string_view hint) {

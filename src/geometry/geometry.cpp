@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace etendue {
@@ -11,26 +12,26 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() / 3;
   if (positions.size() + mesh.positions.size() > most || indices.size() + mesh.indices.size() > most)
     throw InputError("the scene has more than 715 million vertices or 238 million triangles");
-  if (!positions.empty()) positions.pop_back();  // The spare vertex moves to the new end.
-  const auto first_vertex = std::int32_t(positions.size());
+  // No reserve to the size needed: it would copy all tables for each mesh.
+  const std::size_t first_vertex = positions.empty() ? 0 : positions.size() - 1;
+  const std::size_t end = first_vertex + mesh.positions.size(), first_index = indices.size();
   add_row(ids);
-  first_triangle.back() = std::int32_t(indices.size() / 3);
+  first_triangle.back() = std::int32_t(first_index / 3);
   has_normals.back() = mesh.normals.empty() ? 0 : 1;
   has_uvs.back() = mesh.uvs.empty() ? 0 : 1;
   triangles.back() = std::int32_t(mesh.triangle_count());
   has_any_normals = has_any_normals || !mesh.normals.empty();
-  positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
-  if (mesh.normals.empty())
-    normals.resize(positions.size(), Vec3f{0, 0, 0});
-  else
-    normals.insert(normals.end(), mesh.normals.begin(), mesh.normals.end());
-  if (mesh.uvs.empty())
-    uvs.resize(positions.size(), Vec2f{0, 0});
-  else
-    uvs.insert(uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
-  positions.push_back(Vec3f{0, 0, 0});
-  indices.reserve(indices.size() + mesh.indices.size());
-  for (const std::uint32_t index : mesh.indices) indices.push_back(first_vertex + std::int32_t(index));
+  positions.resize(end + 1);  // And the spare vertex.
+  normals.resize(end, Vec3f{0, 0, 0});
+  uvs.resize(end, Vec2f{0, 0});
+  const auto at_first = [&](auto& column) { return column.begin() + std::ptrdiff_t(first_vertex); };
+  std::copy(mesh.positions.begin(), mesh.positions.end(), at_first(positions));
+  std::copy(mesh.normals.begin(), mesh.normals.end(), at_first(normals));
+  std::copy(mesh.uvs.begin(), mesh.uvs.end(), at_first(uvs));
+  positions.back() = {0, 0, 0};
+  indices.resize(first_index + mesh.indices.size());
+  std::transform(mesh.indices.begin(), mesh.indices.end(), indices.begin() + std::ptrdiff_t(first_index),
+                 [&](std::uint32_t index) { return std::int32_t(first_vertex + index); });
   return count() - 1;
 }
 

@@ -8,6 +8,9 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <optional>
+#include <string>
+#include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 namespace etendue {
@@ -17,6 +20,36 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Equal for objects that say the same in the same order, wherever they stand.
+std::string text_of(const Object& object) {
+  std::string text;
+  const auto add_bytes = [&](const auto& value) {
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  const auto add = [&](const std::string& part) {
+    add_bytes(part.size());
+    text += part;
+  };
+  add(object.family);
+  add(object.type);
+  add(object.name);
+  add_bytes(object.properties.size());
+  for (const Property& property : object.properties) {
+    add(property.name);
+    add_bytes(property.value.index());
+    std::visit(
+        [&](const auto& value) {
+          if constexpr (std::is_same_v<decltype(value), const std::string&>)
+            add(value);
+          else
+            add_bytes(value);
+        },
+        property.value);
+  }
+  for (const Object& child : object.children) add(text_of(child));
+  return text;
 }
 
 /// Collects the parts of a scene as the file lists them.
@@ -125,8 +158,7 @@ class Loader {
         light = &part;
       }
     }
-    SurfaceIds ids{.material = std::int32_t(materials_.size())};
-    materials_.push_back(bsdf ? make_material(*bsdf, description_.directory, unread_) : Material{Diffuse{}});
+    SurfaceIds ids{.material = material_id(bsdf)};
     std::optional<Colorf> radiance;
     if (light && light->type == area_light_name) {
       radiance = area_light_radiance(*light, unread_);
@@ -135,11 +167,25 @@ class Loader {
       add_light(*light, description_.directory, lights_, unread_);
     }
     add_shape_geometry(object, description_.directory, ids, radiance, geometry_, lights_, unread_, warnings_);
-    if (has_texture(materials_.back()) && geometry_.triangles.back() > 0 && geometry_.has_uvs.back() == 0)
+    if (has_texture(materials_[std::size_t(ids.material)]) && geometry_.triangles.back() > 0 &&
+        geometry_.has_uvs.back() == 0)
       warnings_.push_back(format_message(
           object.location,
           "this mesh has no texture coordinates: each of its triangles shows the same half of the "
           "texture's unit square, as in Nori"));
+  }
+
+  /// Of the material that `bsdf` describes, diffuse where there is none. Shapes whose descriptions are alike
+  /// share one; where the description has keys that nobody reads, each is made, and warned of, by itself.
+  std::int32_t material_id(const Object* bsdf) {
+    const std::string description = bsdf ? text_of(*bsdf) : "";
+    if (const auto known = material_ids_.find(description); known != material_ids_.end())
+      return known->second;
+    const auto id = std::int32_t(materials_.size());
+    const std::size_t unread_before = unread_.size();
+    materials_.push_back(bsdf ? make_material(*bsdf, description_.directory, unread_) : Material{Diffuse{}});
+    if (unread_.size() == unread_before) material_ids_.emplace(description, id);
+    return id;
   }
 
   static void once(bool is_there, const Object& object) {
@@ -164,6 +210,7 @@ class Loader {
   int samples_per_pixel_ = 16;
   Geometry geometry_;
   std::vector<Material> materials_;
+  std::unordered_map<std::string, std::int32_t> material_ids_;  ///< By what text_of() makes of the BSDF.
   Lights lights_;
   std::optional<HomogeneousMedium> medium_;
   std::vector<UnreadKey> unread_;

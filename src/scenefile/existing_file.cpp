@@ -10,10 +10,11 @@ std::filesystem::path existing_file(const Parameters& parameters, std::string_vi
   const std::string stated = parameters.text(name);
   const std::filesystem::path file = directory / stated;
   std::error_code error;
-  if (!std::filesystem::exists(file, error))
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status))
     throw InputError(parameters.location(name), fmt::format("'{}' is not there", stated),
                      fmt::format("looked for {}; paths are relative to the scene file", file.string()));
-  if (std::filesystem::is_directory(file, error))
+  if (std::filesystem::is_directory(status))
     throw InputError(parameters.location(name), fmt::format("'{}' is a folder", stated),
                      fmt::format("give the name of {}", wanted));
   return file;

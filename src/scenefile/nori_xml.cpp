@@ -357,7 +357,11 @@ Object Reader::read_object(const Element& element, int level) {
   }
 
   std::unordered_map<std::string, Location> stated;
-  for (const pugi::xml_node& node : child_elements(element)) {
+  const std::vector<pugi::xml_node> nodes = child_elements(element);
+  object.children.reserve(std::size_t(std::count_if(
+      nodes.begin(), nodes.end(), [](const auto& node) { return contains(object_tags, node.name()); })));
+  pugi::xml_node parent = element.node;
+  for (const pugi::xml_node& node : nodes) {
     const Element child = read_element(node);
     if (contains(property_tags, child.tag)) {
       Property property = read_property(child);
@@ -378,6 +382,8 @@ Object Reader::read_object(const Element& element, int level) {
       throw InputError(child.location, fmt::format("unknown tag <{}>", child.tag),
                        known_names(child.tag, tags_inside(element.tag)));
     }
+    // What is read goes at once: for small shapes the nodes are larger than the objects made of them.
+    parent.remove_child(node);
   }
   return object;
 }

@@ -1,8 +1,8 @@
 // Disks: where rays meet them, from every packet width; surface coordinates of spheres and disks.
 #include "geometry/bounds.h"
-#include "geometry/raycast.h"
 #include "geometry/shapes.h"
 #include "geometry/surface_uv.h"
+#include "support/cast_rays.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -13,41 +13,6 @@ namespace etendue {
 namespace {
 
 constexpr double turn = 6.283185307179586;
-
-struct Hits {
-  std::vector<float> t, ng_x, ng_y, ng_z, u, v;
-  std::vector<std::int32_t> geometry, primitive, is_visible;
-};
-
-/// Rays given by origin and direction; also whether the segments up to t = 1 are free.
-Hits cast(const Geometry& geometry, const std::vector<Vec3f>& origin, const std::vector<Vec3f>& direction,
-          int width) {
-  const RayCaster caster(geometry);
-  const std::size_t n = origin.size();
-  std::vector<float> o[3], d[3], t_near(n, 0), t_far(n, 1e6f);
-  std::vector<std::int32_t> is_active(n, -1), order(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const float from[3] = {origin[i].x, origin[i].y, origin[i].z};
-    const float along[3] = {direction[i].x, direction[i].y, direction[i].z};
-    for (int axis = 0; axis < 3; ++axis) {
-      o[axis].push_back(from[axis]);
-      d[axis].push_back(along[axis]);
-    }
-    order[i] = std::int32_t(i);
-  }
-  Hits h;
-  for (auto* column : {&h.t, &h.ng_x, &h.ng_y, &h.ng_z, &h.u, &h.v}) column->resize(n);
-  for (auto* column : {&h.geometry, &h.primitive, &h.is_visible}) column->resize(n);
-  const RaySpan rays{o[0].data(), o[1].data(),   o[2].data(),  d[0].data(),      d[1].data(),
-                     d[2].data(), t_near.data(), t_far.data(), is_active.data(), int(n)};
-  const HitSpan hits{h.t.data(), h.ng_x.data(), h.ng_y.data(),     h.ng_z.data(),
-                     h.u.data(), h.v.data(),    h.geometry.data(), h.primitive.data()};
-  caster.closest_hits(rays, hits, width, Coherence::incoherent);
-  const SegmentSpan segments{
-      o[0].data(), o[1].data(), o[2].data(), d[0].data(), d[1].data(), d[2].data(), order.data(), int(n), 1};
-  caster.unoccluded(segments, h.is_visible.data(), width, Coherence::incoherent);
-  return h;
-}
 
 TEST(Disk, IsMetWhereItsPlaneIsWithinTheEllipse) {
   const Transform transforms[] = {
@@ -76,7 +41,7 @@ TEST(Disk, IsMetWhereItsPlaneIsWithinTheEllipse) {
     }
     const auto n = normalize(transform_normal(transform, {0, 0, 1}));
     for (const int width : {1, 4, 8, 16}) {
-      const Hits hits = cast(geometry, origin, direction, width);
+      const test::Hits hits = test::cast_rays(RayCaster(geometry), origin, direction, width);
       for (std::size_t i = 0; i < local.size(); ++i) {
         const bool is_within = std::hypot(local[i].x, local[i].y) < 1;
         ASSERT_EQ(hits.geometry[i], is_within ? 0 : -1) << i;
@@ -94,7 +59,7 @@ TEST(Disk, IsMetWhereItsPlaneIsWithinTheEllipse) {
 TEST(Disk, RaysInItsPlaneMissIt) {
   Geometry geometry;
   geometry.add_disk(make_disk({}), {0, -1});
-  EXPECT_EQ(cast(geometry, {{-3, 0, 0}}, {{1, 0, 0}}, 1).geometry[0], -1);
+  EXPECT_EQ(test::cast_rays(RayCaster(geometry), {{-3, 0, 0}}, {{1, 0, 0}}, 1).geometry[0], -1);
 }
 
 TEST(Disk, BoundsHoldItTightly) {

@@ -1,6 +1,9 @@
 #include "base/error.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <random>
+#include <string>
 
 namespace etendue {
 namespace {
@@ -53,6 +56,30 @@ TEST(FormatMessage, PointsBehindTheLastCharacter) {
   EXPECT_EQ(format_message(end, "p"), "s.xml:2:3: p\n  2 | <c\n    |   ^");
   const Location behind{end.source, 500, 1};
   EXPECT_EQ(format_message(behind, "p"), format_message(end, "p"));
+}
+
+TEST(LineAndColumn, DoNotDependOnWhatWasAskedBefore) {
+  std::string text;
+  for (int i = 0; i < 300; ++i) text += std::string(std::size_t(i % 5), 'x') + (i % 3 == 0 ? "é\n" : "\r\n");
+  const auto one = std::make_shared<const SourceFile>(SourceFile{"one", text});
+  const auto other = std::make_shared<const SourceFile>(SourceFile{"other", "\n" + text});
+  std::mt19937 engine(1);
+  for (int i = 0; i < 2000; ++i) {
+    // By turns forward in small steps and anywhere; now and then in the other file.
+    const bool is_step = i % 50 < 40;
+    const auto& source = i % 17 == 0 ? other : one;
+    const std::size_t offset =
+        (is_step ? std::size_t(i % 50) * 7 : std::size_t(engine())) % (text.size() + 1);
+    const std::string before = source->text.substr(0, offset);
+    const std::size_t newline = before.rfind('\n');
+    std::size_t column = 1;
+    // 0xA9 ends the one character here that has two bytes.
+    for (std::size_t k = newline == std::string::npos ? 0 : newline + 1; k < offset; ++k)
+      column += before[k] != '\xA9';
+    const LineColumn at = line_and_column({source, offset, 1});
+    ASSERT_EQ(at.line, 1 + std::size_t(std::count(before.begin(), before.end(), '\n'))) << offset;
+    ASSERT_EQ(at.column, column) << offset;
+  }
 }
 
 TEST(FormatMessage, LetsNothingThroughThatATerminalWouldActOn) {

@@ -1,0 +1,66 @@
+// Shapes and their materials, from a file to the scene's tables.
+#include "scene/load_scene.h"
+
+#include "scenefile/nori_xml.h"
+#include "support/program.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+namespace etendue {
+namespace {
+
+LoadedScene load_with(const std::string& shapes) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder.path() / "triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  test::write_file(folder.path() / "scene.xml",
+                   "<scene><camera type='perspective'><integer name='width' value='4'/><integer "
+                   "name='height' value='4'/></camera>" +
+                       shapes + "</scene>");
+  return load_scene(read_nori_xml(folder.path() / "scene.xml"));
+}
+
+std::string shape(const std::string& inside) { return "<shape type='rectangle'>" + inside + "</shape>"; }
+std::string grey(double albedo) {
+  return fmt::format("<bsdf type='diffuse'><color name='albedo' value='{}'/></bsdf>", albedo);
+}
+std::string checkers(const std::string& parameter, double dark) {
+  return fmt::format(
+      "<bsdf type='diffuse'><texture type='checkerboard_color' name='{}'><color name='value1' value='{}'/>"
+      "</texture></bsdf>",
+      parameter, dark);
+}
+
+std::vector<std::int32_t> materials_of(const std::string& shapes) {
+  return load_with(shapes).scene.geometry.material;
+}
+
+TEST(Materials, AreSharedWhereTheirDescriptionsAreAlike) {
+  const auto materials = materials_of(
+      shape("") + shape(grey(0.3)) +
+      "<mesh type='obj'><string name='filename' value='triangle.obj'/></mesh>" + "<shape type='sphere'>" +
+      grey(0.3) + "</shape>" + shape(grey(0.4)) + shape("<bsdf type='mirror'/>") + shape(grey(0.3)) +
+      shape("<bsdf type='mirror'/>") + shape(checkers("albedo", 0.1)) + shape(checkers("albedo", 0.2)) +
+      shape(checkers("albedo", 0.1)));
+  EXPECT_EQ(materials, (std::vector<std::int32_t>{0, 1, 0, 1, 2, 3, 1, 3, 4, 5, 4}));
+}
+
+TEST(Materials, ManyShapesHaveAsManyAsDiffer) {
+  std::string shapes;
+  for (int i = 0; i < 300; ++i) shapes += shape(i % 3 == 0 ? "" : grey(0.25 * (i % 3)));
+  const LoadedScene loaded = load_with(shapes);
+  EXPECT_EQ(loaded.scene.geometry.count(), 300);
+  EXPECT_EQ(loaded.scene.materials.size(), 3u);
+}
+
+TEST(Materials, WithUnknownKeysAreEachWarnedOf) {
+  const std::string odd = shape("<bsdf type='mirror'><float name='shine' value='1'/></bsdf>");
+  const LoadedScene loaded = load_with(odd + odd);
+  EXPECT_EQ(loaded.warnings.size(), 2u);
+}
+
+}  // namespace
+}  // namespace etendue
