@@ -1,45 +1,20 @@
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <string>
-#include <vector>
-
-#if ETENDUE_EMBREE_MAJOR >= 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include "base/error.h"
 #include "geometry/bounds.h"
 #include "geometry/raycast.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <embree3/rtcore.h>
+#include <string>
+#include <vector>
 
 namespace etendue {
 
 namespace {
 
-// One packet type per width, under one set of names; the two releases of Embree differ only here.
+// One packet type per width, under one set of names.
 
-#if ETENDUE_EMBREE_MAJOR >= 4
-struct Query {
-  RTCIntersectArguments intersect;
-  RTCOccludedArguments occluded;
-  explicit Query(Coherence coherence) {
-    const auto flags =
-        coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    rtcInitIntersectArguments(&intersect);
-    rtcInitOccludedArguments(&occluded);
-    intersect.flags = flags;
-    occluded.flags = flags;
-  }
-};
-#define ETENDUE_QUERY_INTERSECT(call, scene, query, packet) call(scene, packet, &(query).intersect)
-#define ETENDUE_QUERY_OCCLUDED(call, scene, query, packet) call(scene, packet, &(query).occluded)
-#define ETENDUE_QUERY_INTERSECT_N(call, valid, scene, query, packet) \
-  call(valid, scene, packet, &(query).intersect)
-#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) \
-  call(valid, scene, packet, &(query).occluded)
-#else
 struct Query {
   RTCIntersectContext context;
   explicit Query(Coherence coherence) {
@@ -48,13 +23,6 @@ struct Query {
                                                      : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
 };
-#define ETENDUE_QUERY_INTERSECT(call, scene, query, packet) call(scene, &(query).context, packet)
-#define ETENDUE_QUERY_OCCLUDED(call, scene, query, packet) call(scene, &(query).context, packet)
-#define ETENDUE_QUERY_INTERSECT_N(call, valid, scene, query, packet) \
-  call(valid, scene, &(query).context, packet)
-#define ETENDUE_QUERY_OCCLUDED_N(call, valid, scene, query, packet) \
-  call(valid, scene, &(query).context, packet)
-#endif
 
 /// Rays and hits of `width` lanes as arrays, whatever Embree calls them.
 template <int width>
@@ -65,10 +33,10 @@ struct Packet<1> {
   using Rays = RTCRay;
   using RayHits = RTCRayHit;
   static void intersect(const int* valid, RTCScene scene, Query& query, RayHits* packet) {
-    if (*valid) ETENDUE_QUERY_INTERSECT(rtcIntersect1, scene, query, packet);
+    if (*valid) rtcIntersect1(scene, &query.context, packet);
   }
   static void occluded(const int* valid, RTCScene scene, Query& query, Rays* packet) {
-    if (*valid) ETENDUE_QUERY_OCCLUDED(rtcOccluded1, scene, query, packet);
+    if (*valid) rtcOccluded1(scene, &query.context, packet);
   }
 };
 
@@ -78,10 +46,10 @@ struct Packet<1> {
     using Rays = RTCRay##width;                                                              \
     using RayHits = RTCRayHit##width;                                                        \
     static void intersect(const int* valid, RTCScene scene, Query& query, RayHits* packet) { \
-      ETENDUE_QUERY_INTERSECT_N(rtcIntersect##width, valid, scene, query, packet);           \
+      rtcIntersect##width(valid, scene, &query.context, packet);                             \
     }                                                                                        \
     static void occluded(const int* valid, RTCScene scene, Query& query, Rays* packet) {     \
-      ETENDUE_QUERY_OCCLUDED_N(rtcOccluded##width, valid, scene, query, packet);             \
+      rtcOccluded##width(valid, scene, &query.context, packet);                              \
     }                                                                                        \
   }
 ETENDUE_PACKET(4);
@@ -272,10 +240,6 @@ ShapeHit nearest_hit(const Disk& disk, const Segment& ray) {
   return {t, wide(disk.ng), x, y};
 }
 
-std::array<double, 3> half_extent(const Sphere& sphere) {
-  return {sphere.radius, sphere.radius, sphere.radius};
-}
-
 /// f(shape) with the sphere or disk that Embree numbers `primitive`.
 template <class Function>
 auto with_shape(const Elements& elements, unsigned primitive, Function&& f) {
@@ -286,17 +250,14 @@ auto with_shape(const Elements& elements, unsigned primitive, Function&& f) {
 
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   with_shape(*static_cast<const Elements*>(args->geometryUserPtr), args->primID, [&](const auto& shape) {
-    const std::array<double, 3> extent = half_extent(shape);
-    // Rounded outwards, so that the box never cuts the shape.
-    const auto below = [](double center, double e) { return std::nextafter(float(center - e), -INFINITY); };
-    const auto above = [](double center, double e) { return std::nextafter(float(center + e), INFINITY); };
+    const Box box = box_of(shape);
     RTCBounds& bounds = *args->bounds_o;
-    bounds.lower_x = below(shape.center.x, extent[0]);
-    bounds.lower_y = below(shape.center.y, extent[1]);
-    bounds.lower_z = below(shape.center.z, extent[2]);
-    bounds.upper_x = above(shape.center.x, extent[0]);
-    bounds.upper_y = above(shape.center.y, extent[1]);
-    bounds.upper_z = above(shape.center.z, extent[2]);
+    bounds.lower_x = box.low.x;
+    bounds.lower_y = box.low.y;
+    bounds.lower_z = box.low.z;
+    bounds.upper_x = box.high.x;
+    bounds.upper_y = box.high.y;
+    bounds.upper_z = box.high.z;
   });
 }
 
