@@ -2,24 +2,15 @@
 
 #include "base/error.h"
 #include "base/temporary_file.h"
+#include "scenefile/scene_files.h"
 
 #include <cstdio>
 #include <fmt/format.h>
 #include <system_error>
-#include <variant>
 
 namespace etendue::app {
 
 namespace {
-
-void add_files(const Object& object, const std::filesystem::path& directory,
-               std::vector<std::filesystem::path>& files) {
-  for (const Property& property : object.properties)
-    if (const std::string* name = std::get_if<std::string>(&property.value);
-        name && property.name == "filename")
-      files.push_back(directory / *name);
-  for (const Object& child : object.children) add_files(child, directory, files);
-}
 
 /// Also by another way to the same file.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -34,8 +25,8 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
 
 std::vector<std::filesystem::path> files_of(const SceneDesc& description,
                                             const std::filesystem::path& scene_file) {
-  std::vector<std::filesystem::path> files{scene_file};
-  add_files(description.root, description.directory, files);
+  std::vector<std::filesystem::path> files = files_named_by(description);
+  files.push_back(scene_file);
   return files;
 }
 

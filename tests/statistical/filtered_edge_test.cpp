@@ -36,6 +36,7 @@ void expect_edge(const std::string& filter, const std::function<double(double)>&
     settings.integrator = integrator_from_name("light");
     settings.samples_per_pixel = samples;
     settings.replicates = 16;
+    settings.replicates_by = ReplicatesBy::scrambling;
     settings.seed = 12;
     settings.isa = isa;
     const RenderResult result = render(loaded.scene, settings);

@@ -39,6 +39,7 @@ RenderResult look(const View& view, const std::string& scene, Isa isa, int sampl
   settings.integrator = make_integrator(loaded.integrator, Dialect::nori_2012, unread);
   settings.samples_per_pixel = samples;
   settings.replicates = std::min(samples, 64);
+  settings.replicates_by = ReplicatesBy::scrambling;
   settings.seed = 3;
   settings.isa = isa;
   RenderResult result = render(loaded.scene, settings);
