@@ -190,10 +190,10 @@ PassResult Passes::render(FilmStack& film, int end) {
 
 int end_of_next_pass(int done, int replicates, double seconds_per_replicate, double pixels) {
   constexpr double most = 1024;  // A thread keeps as many means for each pixel of its tile.
-  const double wanted_seconds = 1 + 4e-7 * pixels;
-  const double wanted = std::clamp(wanted_seconds / std::max(seconds_per_replicate, 1e-9), 1.0, most);
-  if (wanted >= replicates - done) return replicates;
-  const std::int64_t step = std::bit_floor(unsigned(wanted));
+  const double wanted = (1 + 4e-7 * pixels) / std::max(seconds_per_replicate, 1e-9);
+  const int left = replicates - done;
+  if (left <= most && left <= 2 * wanted) return replicates;
+  const std::int64_t step = std::bit_floor(unsigned(std::clamp(wanted, 1.0, most)));
   return int(std::min<std::int64_t>((done / step + 1) * step, replicates));
 }
 

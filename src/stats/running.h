@@ -32,7 +32,7 @@ struct RunningStatistics {
 
 /// The union of two disjoint samples (mean and m2: Chan, Golub, LeVeque 1979, "Updating formulae and a
 /// pairwise algorithm for computing sample variances", eq. 2.1; m3: Pebay 2008, "Formulas for robust,
-/// one-pass parallel computation of covariances and arbitrary-order statistical moments", eq. 1.3). An empty
+/// one-pass parallel computation of covariances and arbitrary-order statistical moments"). An empty
 /// sample changes nothing, not even a bit. Rounding depends on the order of the arguments.
 inline RunningStatistics combine(const RunningStatistics& a, const RunningStatistics& b) {
   if (a.count == 0) return b;

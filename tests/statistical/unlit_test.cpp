@@ -43,7 +43,7 @@ RenderResult look(const View& view, const std::string& scene, Isa isa, int sampl
   settings.seed = 3;
   settings.isa = isa;
   RenderResult result = render(loaded.scene, settings);
-  EXPECT_EQ(result.counts.invalid_samples, 0);
+  EXPECT_EQ(result.invalid.count(), 0);
   EXPECT_TRUE(unread.empty());
   return result;
 }
