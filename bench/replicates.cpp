@@ -31,7 +31,7 @@ struct Pixel {
   bool is_lit() const { return truth > 0 && relative_error_sq > 0; }
   /// Student's t over replicate means holds where their skewness is small beside the root of their number.
   PixelClass class_at(int samples) const {
-    if (8 * skewness * skewness > samples) return skewed;
+    if (16 * skewness * skewness > samples) return skewed;
     return is_edge ? edge : relative_error_sq < 0.25 ? smooth : penumbra;
   }
 };

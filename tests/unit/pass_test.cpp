@@ -82,30 +82,51 @@ TEST(Passes, FewerReplicatesAreARenderOfThatMany) {
 
 TEST(Passes, AStopAtOnceLeavesAFragmentOfTheFirstPassAndNothingOfLaterOnes) {
   const LoadedScene loaded = scene_with_invalid_samples("sobol");
-  RenderSettings settings = settings_of(6400, 2, ReplicatesBy::block);
+  RenderSettings settings = settings_of(640, 2, ReplicatesBy::block);
   settings.threads = 1;
   StopRequest stop;
   const ProgressCallback stop_after_some = [&](const RenderProgress& progress) {
     if (progress.fraction > 0.1) stop.soon = stop.now = true;
   };
-  const RenderResult fragment = render(loaded.scene, settings, stop_after_some, &stop);
-  EXPECT_TRUE(fragment.is_interrupted && fragment.is_fragment);
+  Passes passes(loaded.scene, settings, stop_after_some, &stop);
+  FilmStack fragment(37, 37);
+  const PassResult first = passes.render(fragment, 1);
+  EXPECT_FALSE(first.is_complete);
   std::int64_t rendered = 0;
   for (int y = 0; y < 37; ++y)
-    for (int x = 0; x < 37; ++x) rendered += fragment.film.at(x, y).count;
+    for (int x = 0; x < 37; ++x) rendered += fragment.pixel(x, y).count;
   EXPECT_GT(rendered, 0);
   EXPECT_LT(rendered, 37 * 37);
-  EXPECT_EQ(fragment.counts.samples, rendered * 3200);
+  EXPECT_EQ(first.counts.samples, rendered * 320);
 
   StopRequest later;
   const ProgressCallback stop_in_second_pass = [&](const RenderProgress& progress) {
     if (progress.fraction > 0.6) later.soon = true;
   };
-  const RenderResult whole = render(loaded.scene, settings, stop_in_second_pass, &later);
-  EXPECT_TRUE(whole.is_interrupted && !whole.is_fragment);
-  EXPECT_EQ(whole.replicates, 1);
-  EXPECT_EQ(whole.counts.samples, 37 * 37 * 3200);
-  EXPECT_EQ(whole.counts.camera_rays, 37 * 37 * 3200);
+  Passes more_passes(loaded.scene, settings, stop_in_second_pass, &later);
+  FilmStack whole(37, 37);
+  EXPECT_TRUE(more_passes.render(whole, 1).is_complete);
+  const PassResult second = more_passes.render(whole, 2);
+  EXPECT_FALSE(second.is_complete);
+  EXPECT_EQ(second.counts.samples, 0);
+  EXPECT_EQ(second.counts.camera_rays, 0);
+  EXPECT_EQ(whole.last(), 1u);
+  for (int y = 0; y < 37; ++y)
+    for (int x = 0; x < 37; ++x) ASSERT_EQ(whole.pixel(x, y).count, 1);
+}
+
+TEST(Render, SaysWhetherItIsWhole) {
+  const LoadedScene loaded = scene_with_invalid_samples("sobol");
+  StopRequest stop;
+  stop.soon = stop.now = true;
+  const RenderResult nothing = render(loaded.scene, settings_of(16, 8, ReplicatesBy::block), {}, &stop);
+  EXPECT_TRUE(nothing.is_interrupted && nothing.is_fragment);
+  EXPECT_EQ(nothing.counts.samples, 0);
+  const RenderResult all = render(loaded.scene, settings_of(16, 8, ReplicatesBy::block));
+  EXPECT_FALSE(all.is_interrupted || all.is_fragment);
+  EXPECT_EQ(all.replicates, 8);
+  EXPECT_EQ(all.counts.samples, 37 * 37 * 16);
+  EXPECT_EQ(all.counts.camera_rays, 37 * 37 * 16);
 }
 
 TEST(Passes, AStopSoonLetsAShortFirstPassComeToItsEnd) {
