@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 namespace {
 
@@ -119,14 +118,12 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
                     double most_samples) {
   RenderSettings settings;
   settings.integrator = integrator;
-  settings.samples_per_pixel = samples_per_pixel;
-  settings.replicates = std::gcd(4, samples_per_pixel);
   settings.isa = isa;
-  settings.threads = 1;
   const Kernel& kernel = kernel_for(isa);
   const LightSampler light_sampler = light_sampler_for(integrator, scene.lights);
-  Film film(scene.camera.width_px, scene.camera.height_px);
-  std::vector<InvalidSample> invalid;
+  const int replicates = default_replicates(samples_per_pixel);
+  std::vector<Color<double>> means;
+  InvalidSamples invalid;
   const auto block = std::make_unique<SampleBlock>();
   const auto recording_block = std::make_unique<SampleBlock>();
   Recording camera, bounces;
@@ -147,15 +144,15 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   Measurement sum;
   for (int k = 0; k < wanted; ++k) {
     const int tile = int((std::int64_t(k) * tiles + tiles / 2) / wanted) % tiles;
+    const int x = tile % columns * tile_px, y = tile / columns * tile_px;
     TileJob job{.scene = &scene,
                 .light_sampler = &light_sampler,
                 .settings = &settings,
-                .x_begin = tile % columns * tile_px,
-                .y_begin = tile / columns * tile_px,
-                .x_end = tile % columns * tile_px + tile_px,
-                .y_end = tile / columns * tile_px + tile_px,
+                .unit = {.pixels = {x, y, x + tile_px, y + tile_px},
+                         .replicates = replicates,
+                         .samples_per_replicate = samples_per_pixel / replicates},
                 .block = recording_block.get(),
-                .film = &film,
+                .means = &means,
                 .invalid = &invalid};
     camera.clear();
     bounces.clear();

@@ -134,7 +134,7 @@ nlohmann::ordered_json measure_shapes(const std::string& what, const std::filesy
           {"seconds_embree", loaded.seconds_build},
           {"seconds_first_pixels", render_seconds},
           {"seconds", seconds},
-          {"materials", loaded.scene.materials.size()},
+          {"materials", loaded.scene.materials.count()},
           {"bytes_a_shape", scene / count},
           {"bytes_a_shape_as_one_mesh", bytes_as_one_mesh(loaded.scene.geometry) / count},
           {"peak_bytes_a_shape", peak / count}};

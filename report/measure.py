@@ -40,7 +40,7 @@ class Renderer:
         if spp % replicates:
             raise ValueError(f"{spp} samples cannot be split into {replicates} replicates")
         options = ["--integrator", integrator, "--sampler", "sobol", "--spp", str(spp), "--replicates",
-                   str(replicates), "--seed", str(seed), "--threads", str(self.threads)]
+                   str(replicates), "--replicates-by", "scrambling", "--seed", str(seed), "--threads", str(self.threads)]
         name = hashlib.sha256("\0".join([self.binary, scene_digest(scene), *options]).encode()).hexdigest()[:24]
         exr, stats = self.cache / f"{name}.exr", self.cache / f"{name}.json"
         if exr.exists() and stats.exists():

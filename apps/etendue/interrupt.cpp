@@ -1,20 +1,49 @@
 #include "interrupt.h"
 
+#include <array>
 #include <csignal>
+#include <ctime>
 
 namespace etendue::app {
 
-std::atomic<bool> stop_requested{false};
+StopRequest stop_request;
 
 namespace {
 
-extern "C" void handle_interrupt(int signal_number) {
-  stop_requested = true;
-  std::signal(signal_number, SIG_DFL);
+struct Caught {
+  int number;
+  bool is_caught;
+};
+std::array<Caught, 3> signals{{{SIGINT, false}, {SIGTERM, false}, {SIGHUP, false}}};
+LaterSignals later_signals = LaterSignals::kill;
+std::atomic<double> last_signal_s{-1};
+
+double now_s() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+extern "C" void handle_signal(int) {
+  // A terminal that is closed, or a batch system, may send the same wish twice.
+  constexpr double same_wish_s = 0.2;
+  const double now = now_s();
+  if (now - last_signal_s.exchange(now) < same_wish_s && stop_request.soon) return;
+  if (stop_request.soon.exchange(true)) stop_request.now = true;
+  if (!stop_request.now && later_signals == LaterSignals::hurry) return;
+  for (const Caught& signal : signals)
+    if (signal.is_caught) std::signal(signal.number, SIG_DFL);
 }
 
 }  // namespace
 
-void catch_interrupts() { std::signal(SIGINT, handle_interrupt); }
+void catch_signals(LaterSignals later) {
+  later_signals = later;
+  for (Caught& signal : signals) {
+    const auto before = std::signal(signal.number, handle_signal);
+    signal.is_caught = !(signal.number == SIGHUP && before == SIG_IGN);
+    if (!signal.is_caught) std::signal(signal.number, SIG_IGN);
+  }
+}
 
 }  // namespace etendue::app

@@ -1,14 +1,19 @@
-// Ctrl-C ends a command early and keeps what is done; a second one kills.
+// Ctrl-C, SIGTERM and SIGHUP end a command early and keep what is done; one more may hurry it, the next
+// kills.
 #pragma once
 
-#include <atomic>
+#include "render/render.h"
 
 namespace etendue::app {
 
-/// True from the first Ctrl-C on.
-extern std::atomic<bool> stop_requested;
+/// `soon` from the first signal on, `now` from the second on.
+extern StopRequest stop_request;
 
-/// From here on; before, Ctrl-C kills at once, as there is nothing to keep.
-void catch_interrupts();
+/// What the signals after the first do.
+enum class LaterSignals { kill, hurry };
+
+/// From here on; before, they kill at once, as there is nothing to keep. A SIGHUP that is ignored (nohup)
+/// stays so.
+void catch_signals(LaterSignals later);
 
 }  // namespace etendue::app

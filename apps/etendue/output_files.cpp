@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/temporary_file.h"
+#include "scenefile/scene_files.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <map>
@@ -11,20 +11,10 @@
 #include <sys/stat.h>
 #include <system_error>
 #include <utility>
-#include <variant>
 
 namespace etendue::app {
 
 namespace {
-
-void add_files(const Object& object, const std::filesystem::path& directory,
-               std::vector<std::filesystem::path>& files) {
-  for (const Property& property : object.properties)
-    if (const std::string* name = std::get_if<std::string>(&property.value);
-        name && property.name == "filename")
-      files.push_back(directory / *name);
-  for (const Object& child : object.children) add_files(child, directory, files);
-}
 
 /// What all ways to an existing file have in common.
 using FileId = std::pair<dev_t, ino_t>;
@@ -47,10 +37,8 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
 
 std::vector<std::filesystem::path> files_of(const SceneDesc& description,
                                             const std::filesystem::path& scene_file) {
-  std::vector<std::filesystem::path> files{scene_file};
-  add_files(description.root, description.directory, files);
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
+  std::vector<std::filesystem::path> files = files_named_by(description);
+  files.push_back(scene_file);
   return files;
 }
 

@@ -40,6 +40,10 @@ void Progress::update(double fraction) {
   }
 }
 
+void Progress::say(const std::string& line) {
+  if (!is_quiet_) fmt::print(stderr, "{}{}\n", has_bar_ ? "\r\x1b[K" : "", line);
+}
+
 std::string duration_text(double seconds) {
   if (seconds < 60) return fmt::format("{:.1f} s", seconds);
   const long whole = long(seconds + 0.5);

@@ -17,6 +17,8 @@ class Progress {
 
   /// \param fraction done, in [0, 1]
   void update(double fraction);
+  /// A line of its own.
+  void say(const std::string& line);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -29,7 +29,7 @@ struct Options {
 
 struct Counts {
   int cases = 0, failed = 0, errors = 0, unreadable_files = 0;
-  int left_out = 0, files_left_out = 0;  ///< By Ctrl-C.
+  int left_out = 0, files_left_out = 0;  ///< By a signal.
 };
 
 std::string number_text(double value, int digits = 6) {
@@ -146,13 +146,13 @@ int run(const Options& options) {
     check_overwrites_nothing({options.json_file}, files_read(options));
   }
   const TestSettings settings{options.run.seed, options.run.isa(), sampler_from_name(options.sampler),
-                              &stop_requested};
+                              &stop_request.soon};
   const ThreadLimit thread_limit(options.run.threads);
   Counts counts;
   Json all = Json::array();
-  catch_interrupts();
+  catch_signals(LaterSignals::kill);
   for (const std::string& file : options.files) {
-    if (stop_requested) {
+    if (stop_request.soon) {
       ++counts.files_left_out;
       continue;
     }

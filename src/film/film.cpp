@@ -11,11 +11,11 @@ namespace etendue {
 namespace {
 
 RunningStatistics channel(const PixelStatistics& pixel, double Color<double>::*c) {
-  return {pixel.count, pixel.mean.*c, pixel.m2.*c};
+  return {pixel.count, pixel.mean.*c, pixel.m2.*c, pixel.m3.*c};
 }
 
 PixelStatistics sum_of_range(std::span<const Color<double>> means, std::uint64_t first) {
-  if (means.size() == 1) return {1, means[0], {0, 0, 0}};
+  if (means.size() == 1) return {1, means[0], {0, 0, 0}, {0, 0, 0}};
   const std::uint64_t split = replicate_split(first, first + means.size());
   return combine(sum_of_range(means.first(split - first), first),
                  sum_of_range(means.subspan(split - first), split));
@@ -30,6 +30,7 @@ PixelStatistics combine(const PixelStatistics& a, const PixelStatistics& b) {
     const RunningStatistics sum = combine(channel(a, c), channel(b, c));
     both.mean.*c = sum.mean;
     both.m2.*c = sum.m2;
+    both.m3.*c = sum.m3;
   }
   return both;
 }
@@ -48,10 +49,14 @@ Color<double> standard_error(const PixelStatistics& pixel) {
           channel(pixel, &Color<double>::b).standard_error()};
 }
 
-Film::Film(int width, int height) : width_(width), height_(height) {
+void check_film_size(int width, int height) {
   if (width <= 0 || height <= 0)
     throw InputError(
         fmt::format("an image of {} x {} pixels: width and height must be at least 1", width, height));
+}
+
+Film::Film(int width, int height) : width_(width), height_(height) {
+  check_film_size(width, height);
   pixels_.resize(std::size_t(width) * std::size_t(height));
 }
 

@@ -1,4 +1,4 @@
-// What a pixel remembers: count, mean and M2 over the means of its replicates.
+// What a pixel remembers: count, mean, M2 and M3 over the means of its replicates.
 #pragma once
 
 #include "base/color.h"
@@ -16,9 +16,12 @@ struct PixelStatistics {
   std::int64_t count = 0;  ///< Replicates; 0: not rendered.
   Color<double> mean{0, 0, 0};
   Color<double> m2{0, 0, 0};  ///< Sum of squared deviations from the mean.
+  Color<double> m3{0, 0, 0};  ///< Sum of cubed deviations from the mean.
+
+  friend bool operator==(const PixelStatistics&, const PixelStatistics&) = default;
 };
 
-/// The union of two disjoint sets of replicates (Chan, Golub, LeVeque 1979), `a` holding the lower indices.
+/// The union of two disjoint sets of replicates, `a` holding the lower indices.
 PixelStatistics combine(const PixelStatistics& a, const PixelStatistics& b);
 
 /// Where the sum over replicates [first, last) is cut in two, last - first >= 2: at the index between them
@@ -35,6 +38,9 @@ PixelStatistics combine_replicates(std::span<const Color<double>> means, std::ui
 
 /// Standard error of the mean per channel; NaN where count < 2 (it is then unknown, not zero).
 Color<double> standard_error(const PixelStatistics& pixel);
+
+/// Throws InputError unless both are positive.
+void check_film_size(int width, int height);
 
 /// The pixels of an image, rows from the top; all of them not rendered at first.
 class Film {

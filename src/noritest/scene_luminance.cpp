@@ -25,30 +25,27 @@ void cover_film_by_one_pixel(Scene& scene, SamplerKind sampler) {
   scene.sampler = sampler;
 }
 
-SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, const Kernel& kernel,
-                           SampleBlock& block) {
+SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, int samples,
+                           const Kernel& kernel, SampleBlock& block) {
   SceneLuminance luminances;
   const std::function<void(const SampleBlock&)> add_samples = [&](const SampleBlock& rendered) {
     for (std::size_t i = 0; i < std::size_t(rendered.count); ++i)
       luminances.samples.add(
           luminance(Colorf{rendered.radiance.r[i], rendered.radiance.g[i], rendered.radiance.b[i]}));
   };
-  Film film(1, 1);
-  std::vector<InvalidSample> invalid;
+  std::vector<Color<double>> means;
+  InvalidSamples invalid;
   const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
   TileJob job{.scene = &scene,
               .light_sampler = &light_sampler,
               .settings = &settings,
-              .x_begin = 0,
-              .y_begin = 0,
-              .x_end = 1,
-              .y_end = 1,
+              .unit = {.pixels = {0, 0, 1, 1}, .samples_per_replicate = samples},
               .block = &block,
-              .film = &film,
+              .means = &means,
               .invalid = &invalid,
               .on_block = &add_samples};
   kernel.render_tile(job);
-  luminances.invalid_samples = job.invalid_samples;
+  luminances.invalid_samples = invalid.count();
   return luminances;
 }
 
@@ -65,11 +62,10 @@ SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrat
     throw_if_stopped(test);
     RenderSettings settings;
     settings.integrator = integrator;
-    settings.samples_per_pixel = int(std::min(samples_a_task, count - std::int64_t(part) * samples_a_task));
-    settings.replicates = 1;
     settings.seed = hash64(hash64(seed) + part);
     settings.isa = test.isa;
-    parts[part] = render_task(scene, settings, kernel, *blocks.local());
+    const int samples = int(std::min(samples_a_task, count - std::int64_t(part) * samples_a_task));
+    parts[part] = render_task(scene, settings, samples, kernel, *blocks.local());
   });
   SceneLuminance all;
   for (const SceneLuminance& part : parts) {

@@ -13,8 +13,7 @@ using F = NativeLanes;
 
 /// Counts and notes samples that are not finite and >= 0, and makes them 0 so that they do not poison their
 /// pixel.
-void set_invalid_aside(TileJob& job, SampleBlock& block, int samples_per_replicate,
-                       const PixelBlocks& pixels) {
+void set_invalid_aside(TileJob& job, SampleBlock& block, const PixelBlocks& pixels) {
   ColorColumn& radiance = block.radiance;
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
     const Color<F> c = load_lanes<F>(radiance, i);
@@ -27,11 +26,8 @@ void set_invalid_aside(TileJob& job, SampleBlock& block, int samples_per_replica
         continue;
       radiance.r[s] = radiance.g[s] = radiance.b[s] = 0;
       if (s >= block.count) continue;
-      ++job.invalid_samples;
-      if (job.invalid->size() < most_invalid_noted)
-        job.invalid->push_back({block.pixel_x[s], block.pixel_y[s],
-                                pixels.sample_of(s) / samples_per_replicate,
-                                pixels.sample_of(s) % samples_per_replicate, sample});
+      job.invalid->add(
+          {block.pixel_x[s], block.pixel_y[s], pixels.replicate_of(s), pixels.index_of(s), sample});
     }
   }
 }
@@ -41,16 +37,15 @@ void render_tile(TileJob& job) {
   PixelBlocks pixels(job);
   block.clock.start();
   while (pixels.next(block)) {
-    if (job.stop && job.stop->load(std::memory_order_relaxed)) {
+    if (job.must_stop && (*job.must_stop)()) {
       job.is_stopped = true;
       return;
     }
     run_integrator<F>(job.settings->integrator, *job.scene, *job.light_sampler, block,
                       job.settings->is_reordering);
-    set_invalid_aside(job, block, pixels.samples_per_replicate(), pixels);
+    set_invalid_aside(job, block, pixels);
     weigh_by_filter<F>(*job.scene, block);
-    pixels.add_to_film(block, *job.film);
-    job.samples = pixels.samples_in_film();
+    pixels.take_means(block);
     block.clock.finish(Stage::sums);
     if (job.on_block) {
       (*job.on_block)(block);

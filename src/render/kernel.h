@@ -1,29 +1,30 @@
 // The door between the program and a kernel module: one table per instruction set.
 #pragma once
 
-#include "film/film.h"
-#include "integrator/integrator.h"
 #include "integrator/sample_block.h"
 #include "lightsampler/light_sampler.h"
+#include "render/invalid_samples.h"
 #include "render/render.h"
+#include "render/work_unit.h"
 
 #include <functional>
 #include <vector>
 
 namespace etendue {
 
-/// A rectangle of pixels to render, upper bounds exclusive, and where its results go.
+/// A unit of work for one thread, and where its results go.
 struct TileJob {
   const Scene* scene;
   const LightSampler* light_sampler;  ///< Over the scene's lights, as the settings name it.
-  const RenderSettings* settings;
-  int x_begin, y_begin, x_end, y_end;
+  const RenderSettings* settings;     ///< Of which only the unit says how many samples there are.
+  WorkUnit unit;
   SampleBlock* block;  ///< Scratch of this thread.
-  Film* film;
-  std::vector<InvalidSample>* invalid;
-  const std::atomic<bool>* stop = nullptr;        ///< Asked between blocks.
-  std::int64_t samples = 0, invalid_samples = 0;  ///< `samples`: of pixels that are whole.
-  bool is_stopped = false;                        ///< Some pixels of the tile were not rendered.
+  /// Out: of each replicate of each pixel (row by row), the mean radiance.
+  std::vector<Color<double>>* means;
+  InvalidSamples* invalid;
+  /// Asked between blocks, where set: ends the job before it is done.
+  const std::function<bool()>* must_stop = nullptr;
+  bool is_stopped = false;  ///< It was; `means` is not complete.
   /// Called after each block with what its samples have become, where set.
   const std::function<void(const SampleBlock&)>* on_block = nullptr;
 };

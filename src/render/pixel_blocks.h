@@ -1,11 +1,10 @@
 // A tile as a sequence of blocks: many samples of one pixel, or few of each pixel of a small square.
 #pragma once
 
-#include "film/film.h"
 #include "integrator/sample_block.h"
 #include "render/kernel.h"
 #include "render/replicate_sum.h"
-#include "sampler/sampler.h"
+#include "sampler/replicates.h"
 
 #include <algorithm>
 #include <vector>
@@ -16,26 +15,29 @@ class PixelBlocks {
  public:
   explicit PixelBlocks(const TileJob& job)
       : job_(job),
-        samples_(job.settings->samples_per_pixel),
-        per_replicate_(samples_ / job.settings->replicates) {
+        area_(job.unit.pixels),
+        samples_(int(job.unit.samples_per_pixel())),
+        per_replicate_(job.unit.samples_per_replicate),
+        x_(area_.x_begin),
+        y_(area_.y_begin) {
     while (samples_ <= block_capacity / (2 * width_ * height_)) (width_ > height_ ? height_ : width_) *= 2;
-    means_.resize(std::size_t(job.settings->replicates));
-    x_ = job.x_begin;
-    y_ = job.y_begin;
+    job.means->resize(std::size_t(area_.width()) * std::size_t(area_.height()) *
+                      std::size_t(job.unit.replicates));
   }
 
-  std::int64_t samples_in_film() const { return samples_in_film_; }  ///< Of pixels that are whole.
-  int samples_per_replicate() const { return per_replicate_; }
-  /// The sample of its pixel, over all replicates, that stands at position `i` of the block.
-  std::int64_t sample_of(int i) const { return first_sample_ + i % samples_in_block_; }
+  /// Which sample of its pixel stands at position `i` of the block.
+  std::int64_t replicate_of(int i) const {
+    return job_.unit.first_replicate + (first_sample_ + i % samples_in_block_) / per_replicate_;
+  }
+  std::int64_t index_of(int i) const { return (first_sample_ + i % samples_in_block_) % per_replicate_; }
 
   /// Fills in who the next block's samples are; false at the end of the tile.
   bool next(SampleBlock& block) {
-    if (y_ >= job_.y_end) return false;
+    if (y_ >= area_.y_end) return false;
     pixels_.clear();
     for (int k = 0; k < width_ * height_; ++k) {
       const Pixel pixel{x_ + even_bits(k), y_ + even_bits(k >> 1)};
-      if (pixel.x < job_.x_end && pixel.y < job_.y_end) pixels_.push_back(pixel);
+      if (pixel.x < area_.x_end && pixel.y < area_.y_end) pixels_.push_back(pixel);
     }
     block.is_one_pixel = pixels_.size() == 1;
     samples_in_block_ = std::min(samples_ - first_sample_, block_capacity);
@@ -54,30 +56,24 @@ class PixelBlocks {
   }
 
   /// Takes in the block's radiance, and moves on.
-  void add_to_film(const SampleBlock& block, Film& film) {
+  void take_means(const SampleBlock& block) {
     int i = 0;
-    for (const Pixel& pixel : pixels_) {
+    for (const Pixel& pixel : pixels_)
       for_each_run([&](int replicate, int index, int count) {
         sum_r_.add(&block.radiance.r[i], count, index);
         sum_g_.add(&block.radiance.g[i], count, index);
         sum_b_.add(&block.radiance.b[i], count, index);
         i += count;
-        if (index + count == per_replicate_) {
-          const double scale = 1.0 / per_replicate_;
-          means_[std::size_t(replicate)] = {sum_r_.take() * scale, sum_g_.take() * scale,
-                                            sum_b_.take() * scale};
-        }
+        if (index + count < per_replicate_) return;
+        const double scale = 1.0 / per_replicate_;
+        mean_at(pixel, replicate) = {sum_r_.take() * scale, sum_g_.take() * scale, sum_b_.take() * scale};
       });
-      if (first_sample_ + samples_in_block_ < samples_) continue;
-      film.at(pixel.x, pixel.y) = combine_replicates(means_, 0);
-      samples_in_film_ += samples_;
-    }
     first_sample_ += samples_in_block_;
     if (first_sample_ < samples_) return;
     first_sample_ = 0;
     x_ += width_;
-    if (x_ >= job_.x_end) {
-      x_ = job_.x_begin;
+    if (x_ >= area_.x_end) {
+      x_ = area_.x_begin;
       y_ += height_;
     }
   }
@@ -95,7 +91,12 @@ class PixelBlocks {
     return result;
   }
 
-  /// f(replicate, index of the first sample in it, count) over this block's samples of one pixel.
+  Color<double>& mean_at(const Pixel& pixel, int replicate) {
+    const int number = (pixel.y - area_.y_begin) * area_.width() + pixel.x - area_.x_begin;
+    return (*job_.means)[std::size_t(number) * std::size_t(job_.unit.replicates) + std::size_t(replicate)];
+  }
+
+  /// f(replicate of the unit, index of the first sample in it, count) over this block's samples of one pixel.
   template <class Function>
   void for_each_run(Function&& f) const {
     int sample = first_sample_;
@@ -110,28 +111,29 @@ class PixelBlocks {
 
   void fill_pixel(SampleBlock& block, const Pixel& pixel) {
     for_each_run([&](int replicate, int index, int count) {
-      const std::uint64_t stream = sample_stream(job_.settings->seed, pixel.x, pixel.y, replicate);
+      const ReplicatePlace place =
+          replicate_place(job_.settings->replicates_by, job_.settings->seed, pixel.x, pixel.y,
+                          job_.unit.first_replicate + replicate, per_replicate_);
       for (int k = 0; k < count; ++k) {
         const int i = block.count + k;
         block.pixel_x[i] = pixel.x;
         block.pixel_y[i] = pixel.y;
-        block.path.stream_lo[i] = std::uint32_t(stream);
-        block.path.stream_hi[i] = std::uint32_t(stream >> 32);
-        block.path.index[i] = std::uint32_t(index + k);
+        block.path.stream_lo[i] = std::uint32_t(place.stream);
+        block.path.stream_hi[i] = std::uint32_t(place.stream >> 32);
+        block.path.index[i] = place.first_index + std::uint32_t(index + k);
       }
       block.count += count;
     });
   }
 
   const TileJob& job_;
-  const int samples_, per_replicate_;
-  std::int64_t samples_in_film_ = 0;
-  int width_ = 1, height_ = 1;  ///< Pixels a block.
-  int x_ = 0, y_ = 0;           ///< Upper left of the current block.
+  const PixelRectangle area_;
+  const int samples_, per_replicate_;  ///< Of the unit, a pixel.
+  int width_ = 1, height_ = 1;         ///< Pixels a block.
+  int x_, y_;                          ///< Upper left of the current block.
   int first_sample_ = 0, samples_in_block_ = 0;
   std::vector<Pixel> pixels_;
   ReplicateSum sum_r_, sum_g_, sum_b_;
-  std::vector<Color<double>> means_;
 };
 
 }  // namespace etendue

@@ -20,20 +20,21 @@ void check(const Scene& scene, const RenderSettings& settings, const SampleId& s
   };
   in_range("pixel column", sample.x, scene.camera.width_px);
   in_range("pixel row", sample.y, scene.camera.height_px);
-  in_range("replicate", sample.replicate, settings.replicates);
-  in_range("sample", sample.index, settings.samples_per_pixel / settings.replicates);
+  in_range("replicate", sample.replicate, settings.replicate_count());
+  in_range("sample", sample.index, settings.samples_per_pixel / settings.replicate_count());
 }
 
 /// A block of this one sample.
 std::unique_ptr<SampleBlock> block_of(const RenderSettings& settings, const SampleId& sample) {
   auto block = std::make_unique<SampleBlock>();
-  const std::uint64_t stream = sample_stream(settings.seed, sample.x, sample.y, sample.replicate);
+  const ReplicatePlace place = replicate_place(settings.replicates_by, settings.seed, sample.x, sample.y,
+                                               sample.replicate, settings.samples_per_replicate());
   block->count = block->padded_count = 1;
   block->pixel_x[0] = sample.x;
   block->pixel_y[0] = sample.y;
-  block->path.stream_lo[0] = std::uint32_t(stream);
-  block->path.stream_hi[0] = std::uint32_t(stream >> 32);
-  block->path.index[0] = std::uint32_t(sample.index);
+  block->path.stream_lo[0] = std::uint32_t(place.stream);
+  block->path.stream_hi[0] = std::uint32_t(place.stream >> 32);
+  block->path.index[0] = place.first_index + std::uint32_t(sample.index);
   return block;
 }
 

@@ -7,11 +7,7 @@ const std::vector<Plugin>& sampler_plugins() {
                                       "Samples a pixel, in all"};
   static const std::vector<Plugin> plugins{
       {"sampler", "independent", "Uncorrelated random numbers.", {sample_count}, {}},
-      {"sampler",
-       "sobol",
-       "Owen-scrambled Sobol points; each replicate has its own scrambling.",
-       {sample_count},
-       {}}};
+      {"sampler", "sobol", "Owen-scrambled Sobol points.", {sample_count}, {}}};
   return plugins;
 }
 

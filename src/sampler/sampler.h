@@ -1,4 +1,4 @@
-// Random numbers as a pure function of (seed, pixel, replicate, index, dimension).
+// Random numbers as a pure function of (seed, pixel, scrambling, index, dimension).
 //
 // To add a sampler: give it a SamplerKind, its name and its plugin description in sampler.cpp, and its case
 // in sample_2d, a file of its own for its points; add it to docs/scene_format.md and to
@@ -18,7 +18,7 @@
 
 namespace etendue {
 
-/// `independent`: uncorrelated numbers. `sobol`: Owen-scrambled Sobol points, one scrambling a replicate.
+/// `independent`: uncorrelated numbers. `sobol`: Owen-scrambled Sobol points, one scrambling a stream.
 enum class SamplerKind { independent, sobol };
 
 const std::vector<Plugin>& sampler_plugins();
@@ -41,15 +41,16 @@ constexpr std::uint32_t at_vertex(std::uint32_t pair, std::uint32_t vertex) {
 }
 }  // namespace dimension
 
-/// The 64-bit key of one (seed, pixel, replicate); its halves seed the lanes.
-inline std::uint64_t sample_stream(std::uint64_t seed, int x, int y, std::int64_t replicate) {
-  return hash64(hash64(hash64(seed) ^ std::uint64_t(replicate)) ^ (std::uint64_t(std::uint32_t(y)) << 32) ^
+/// The 64-bit key of one sequence of samples; its halves seed the lanes. A pixel has one for each scrambling,
+/// number 0 where its replicates are blocks of one.
+inline std::uint64_t sample_stream(std::uint64_t seed, int x, int y, std::int64_t scrambling) {
+  return hash64(hash64(hash64(seed) ^ std::uint64_t(scrambling)) ^ (std::uint64_t(std::uint32_t(y)) << 32) ^
                 std::uint32_t(x));
 }
 
 /// Two times 32 uniform random bits for each lane.
 /// \param stream_lo,stream_hi the halves of `sample_stream`
-/// \param index of the sample within its replicate
+/// \param index of the sample in the stream
 template <class F>
 Vec2<UInt<F>> sample_2d(SamplerKind kind, const UInt<F>& stream_lo, const UInt<F>& stream_hi,
                         const UInt<F>& index, std::uint32_t pair) {

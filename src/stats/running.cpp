@@ -9,7 +9,9 @@ void RunningStatistics::add(double value) {
   ++count;
   const double difference = value - mean;
   mean += difference / double(count);
-  m2 += difference * (value - mean);
+  const double added = difference * (value - mean), step = difference / double(count);
+  m3 += step * (added * double(count - 2) - 3 * m2);
+  m2 += added;
 }
 
 double RunningStatistics::variance() const {
@@ -18,13 +20,9 @@ double RunningStatistics::variance() const {
 
 double RunningStatistics::standard_error() const { return std::sqrt(variance() / double(count)); }
 
-RunningStatistics combine(const RunningStatistics& a, const RunningStatistics& b) {
-  if (a.count == 0) return b;
-  if (b.count == 0) return a;
-  const double difference = b.mean - a.mean;
-  const double share_b = double(b.count) / double(a.count + b.count);
-  return {a.count + b.count, a.mean + difference * share_b,
-          a.m2 + b.m2 + difference * difference * (double(a.count) * share_b)};
+double RunningStatistics::skewness() const {
+  if (count < 3 || m2 == 0) return std::numeric_limits<double>::quiet_NaN();
+  return std::sqrt(double(count)) * m3 / (m2 * std::sqrt(m2));
 }
 
 }  // namespace etendue

@@ -3,9 +3,11 @@
 #include "support/program.h"
 
 #include <cmath>
+#include <cstring>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <random>
 
 namespace etendue::test {
 namespace {
@@ -56,8 +58,8 @@ TEST_F(CommandLine, HelpOfRenderNamesEveryOption) {
   const ProgramResult help = run({"render", "--help"});
   EXPECT_EQ(help.exit_code, 0);
   for (const char* name :
-       {"SCENE", "-o,--output", "--integrator", "--sampler", "--spp", "--replicates", "--seed", "--threads",
-        "--isa", "--stats", "--quiet", "--strict", "--dialect", "--replay"})
+       {"SCENE", "-o,--output", "--integrator", "--sampler", "--spp", "--replicates", "--replicates-by",
+        "--seed", "--threads", "--isa", "--stats", "--quiet", "--strict", "--dialect", "--replay"})
     EXPECT_THAT(help.out, HasSubstr(name));
 }
 
@@ -109,6 +111,8 @@ TEST_F(CommandLine, StatsHaveTheirKeys) {
   EXPECT_EQ(stats.at("isa"), "scalar");
   EXPECT_EQ(stats.at("spp"), 8);
   EXPECT_EQ(stats.at("replicates"), 8);
+  EXPECT_EQ(stats.at("replicates_by"), "block");
+  EXPECT_EQ(stats.at("interrupted"), false);
   EXPECT_EQ(stats.at("seed"), 3);
   EXPECT_EQ(stats.at("threads"), 2);
   EXPECT_EQ(stats.at("width"), 40);
@@ -166,29 +170,193 @@ TEST_F(CommandLine, ProgressWithoutATerminalIsAtMostALineASecond) {
   EXPECT_THAT(result.err, Not(HasSubstr("\r")));
 }
 
-TEST_F(CommandLine, InterruptKeepsWhatWasRendered) {
+/// The pixels that have no radiance and no error; NaN as an error of one with radiance does not count.
+std::int64_t count_not_rendered(const Image& image) {
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < image.find("R")->values.size(); ++i)
+    count += std::isnan(image.find("stderr.R")->values[i]) && image.find("R")->values[i] == 0;
+  return count;
+}
+
+bool same_pixels(const Image& a, const Image& b) {
+  for (const Channel& channel : a.channels) {
+    const std::vector<float>&x = channel.values, &y = b.find(channel.name)->values;
+    if (x.size() != y.size() || std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) != 0) return false;
+  }
+  return a.channels.size() == b.channels.size();
+}
+
+/// Longer than any test waits, in replicates that take a fraction of a second.
+const std::vector<std::string> long_render{"render",    "scene.xml", "-o",        "a.exr",        "--stats",
+                                           "s.json",    "--spp",     "409600000", "--replicates", "4096000",
+                                           "--threads", "1",         "--sampler", "sobol"};
+
+TEST_F(CommandLine, AnInterruptLeavesTheWholeImageOfFewerReplicates) {
+  for (const std::string by : {"block", "scrambling"}) {
+    std::filesystem::remove(path("a.exr"));
+    std::vector<std::string> command = long_render;
+    command.insert(command.end(), {"--replicates-by", by});
+    Program program(command, folder_.path());
+    program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
+    program.send(SIGINT);
+    const ProgramResult result = program.wait();
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("interrupted"), HasSubstr("saved the whole image ("),
+                                  HasSubstr(" of 4096000 replicates"), HasSubstr("to a.exr")));
+    const Image image = read_exr(path("a.exr"));
+    EXPECT_EQ(count_not_rendered(image), 0);
+    EXPECT_EQ(metadata(image, "pixelsNotRendered"), "(none)");
+    const int replicates = json("s.json").at("replicates"), samples = json("s.json").at("spp");
+    ASSERT_GT(replicates, 1);
+    EXPECT_EQ(samples, 100 * replicates);
+    EXPECT_EQ(json("s.json").at("interrupted"), true);
+    EXPECT_EQ(json("s.json").at("samples"), 40 * 30 * samples);
+    EXPECT_EQ(metadata(image, "replicates"), "0-" + std::to_string(replicates - 1));
+    EXPECT_EQ(metadata(image, "samplesPerPixel"), std::to_string(samples));
+    EXPECT_EQ(metadata(image, "replicatesBy"), by);
+    ASSERT_EQ(run({"render", "scene.xml", "-o", "b.exr", "--spp", std::to_string(samples), "--replicates",
+                   std::to_string(replicates), "--replicates-by", by, "--sampler", "sobol"})
+                  .exit_code,
+              0);
+    EXPECT_TRUE(same_pixels(image, read_exr(path("b.exr"))));
+  }
+}
+
+TEST_F(CommandLine, AnInterruptedImageDoesNotReplaceAFinishedOne) {
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "a.exr", "--spp", "8"}).exit_code, 0);
+  const std::string finished = read_file(path("a.exr"));
+  Program program(long_render, folder_.path());
+  program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
+  program.send(SIGTERM);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("to a.partial.exr"), HasSubstr("a.exr is kept as it was")));
+  EXPECT_EQ(read_file(path("a.exr")), finished);
+  EXPECT_EQ(count_not_rendered(read_exr(path("a.partial.exr"))), 0);
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "a.exr", "--spp", "16"}).exit_code, 0);
+  EXPECT_NE(read_file(path("a.exr")), finished);
+  EXPECT_TRUE(std::filesystem::exists(path("a.partial.exr")));
+}
+
+TEST_F(CommandLine, AFragmentGoesToAPartialNameOfItsOwn) {
   write_file(path("scene.xml"), scene_xml(512, 512));
-  Program program({"render", "scene.xml", "-o", "a.exr", "--stats", "s.json", "--spp", "5000", "--threads",
+  // A replicate of every pixel takes minutes.
+  Program program({"render", "scene.xml", "-o", "a.exr", "-o", "a.png", "--stats", "s.json", "--spp", "40000",
+                   "--replicates", "2", "--threads", "1", "--isa", "scalar"},
+                  folder_.path());
+  program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
+  program.send(SIGHUP);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("to a.partial.exr, a.partial.png"));
+  EXPECT_THAT(files(),
+              testing::UnorderedElementsAre("scene.xml", "a.partial.exr", "a.partial.png", "s.json"));
+  const Image image = read_exr(path("a.partial.exr"));
+  const std::int64_t unknown = json("s.json").at("pixels_not_rendered");
+  EXPECT_GT(unknown, 0);
+  EXPECT_LT(unknown, 512 * 512);
+  EXPECT_GE(count_not_rendered(image), unknown);
+  EXPECT_EQ(metadata(image, "pixelsNotRendered"), std::to_string(unknown));
+  EXPECT_EQ(metadata(image, "replicates"), "0-0");
+  EXPECT_EQ(json("s.json").at("samples"), (512 * 512 - unknown) * 20000);
+}
+
+TEST_F(CommandLine, ASecondSignalEndsTheFirstPass) {
+  // The first pass takes some seconds.
+  Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "12000", "--replicates", "2", "--threads",
                    "1", "--isa", "scalar"},
                   folder_.path());
-  // The first line of progress comes after a second, and with the first tiles.
   program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
+  program.send(SIGINT);
+  program.wait_until([&] {  // On a slow machine the rest of the pass may not be worth waiting for.
+    const std::string said = program.err_so_far();
+    return said.find("one more signal") != std::string::npos || said.find("saved") != std::string::npos;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   program.send(SIGINT);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.err, HasSubstr("interrupted"));
-  const Image image = read_exr(path("a.exr"));
-  std::int64_t unknown = 0;
-  for (std::size_t i = 0; i < image.find("R")->values.size(); ++i) {
-    if (!std::isnan(image.find("stderr.R")->values[i])) continue;
-    ++unknown;
-    EXPECT_EQ(image.find("R")->values[i], 0);
+  EXPECT_THAT(result.err, HasSubstr("to a.partial.exr"));
+}
+
+TEST_F(CommandLine, SignalsAtAnyTimeLeaveAWholeImageAndTheFinishedOne) {
+  write_file(path("scene.xml"), scene_xml(16, 12));
+  std::mt19937_64 engine(17);
+  const int signals[]{SIGINT, SIGTERM, SIGHUP};
+  std::filesystem::create_directory(path("out"));
+  for (int k = 0; k < 50; ++k) {
+    const bool has_finished_one = k % 2 == 1;
+    const std::string finished = "finished " + std::to_string(k);
+    if (has_finished_one) write_file(path("out/a.exr"), finished);
+    Program program({"render", "scene.xml", "-o", "out/a.exr", "--spp", "400000", "--replicates", "400",
+                     "--threads", "1", "--sampler", "sobol"},
+                    folder_.path());
+    program.wait_until([&] { return program.err_so_far().find("samples a pixel") != std::string::npos; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(engine() % 100));
+    program.send(signals[k % 3]);
+    const ProgramResult result = program.wait();
+    ASSERT_THAT(result.exit_code, testing::AnyOf(0, 3)) << k << result.err;
+    const bool is_partial = result.exit_code == 3 && has_finished_one;
+    EXPECT_EQ(count_not_rendered(read_exr(path(is_partial ? "out/a.partial.exr" : "out/a.exr"))), 0) << k;
+    if (is_partial) {
+      EXPECT_EQ(read_file(path("out/a.exr")), finished);
+    }
+    std::filesystem::remove(path("out/a.exr"));
+    std::filesystem::remove(path("out/a.partial.exr"));
+    EXPECT_TRUE(std::filesystem::is_empty(path("out"))) << k;
   }
-  EXPECT_GT(unknown, 0);
-  EXPECT_LT(unknown, 512 * 512);
-  EXPECT_EQ(metadata(image, "pixelsNotRendered"), std::to_string(unknown));
-  EXPECT_EQ(json("s.json").at("samples"), (512 * 512 - unknown) * 5000);
-  EXPECT_EQ(json("s.json").at("pixels_not_rendered"), unknown);
+}
+
+TEST_F(CommandLine, AnOutputThatFailsDoesNotTakeTheOthersWithIt) {
+  std::filesystem::create_directory(path("gone"));
+  Program program({"render", "scene.xml", "-o", "gone/a.exr", "-o", "b.exr", "-o", "gone/c.png", "--stats",
+                   "s.json", "--spp", "4000", "--threads", "1", "--isa", "scalar"},
+                  folder_.path());
+  program.wait_until([&] { return program.err_so_far().find("samples a pixel") != std::string::npos; });
+  std::filesystem::remove(path("gone"));
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("error: gone/a.exr: "), HasSubstr("error: gone/c.png: ")));
+  EXPECT_EQ(read_exr(path("b.exr")).width, 40);
+  EXPECT_EQ(json("s.json").at("interrupted"), false);
+}
+
+TEST_F(CommandLine, PartialNamesAreNotWrittenOverEither) {
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "sky.partial.exr", "--spp", "1"}).exit_code, 0);
+  write_file(
+      path("lit.xml"),
+      "<scene><camera type=\"perspective\"/><shape type=\"rectangle\"/><emitter type=\"envmap\"><string "
+      "name=\"filename\" value=\"sky.partial.exr\"/></emitter></scene>");
+  EXPECT_THAT(run({"render", "lit.xml", "-o", "sky.exr", "--spp", "1"}).err,
+              HasSubstr("sky.partial.exr: this file would be overwritten"));
+  EXPECT_THAT(run({"render", "scene.xml", "-o", "a.exr", "-o", "a.partial.exr", "--spp", "1"}).err,
+              HasSubstr("this file would be written twice"));
+}
+
+TEST_F(CommandLine, AnIntegratorOnTheCommandLineRescuesAScene) {
+  const std::string scene = scene_xml(8, 6);
+  const auto with = [&](const std::string& integrator) {
+    write_file(path("scene.xml"), "<scene>" + integrator + scene.substr(7));
+  };
+  const std::vector<std::string> render_mis{"render", "scene.xml", "-o",           "a.exr",
+                                            "--spp",  "2",         "--integrator", "mis"};
+  with("<integrator type=\"pssmlt\"/>");
+  EXPECT_EQ(run({"render", "scene.xml", "-o", "a.exr"}).exit_code, 2);
+  ProgramResult result = run(render_mis);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("warning: "), HasSubstr("unknown integrator 'pssmlt'"),
+                                HasSubstr("taken in its place: --integrator mis")));
+  with("<integrator type=\"av\"><float name=\"length\" value=\"-1\"/></integrator>");
+  EXPECT_EQ(run({"render", "scene.xml", "-o", "a.exr"}).exit_code, 2);
+  result = run(render_mis);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, Not(HasSubstr("warning")));
+  with("<integrator type=\"mis\"><string name=\"heuristic\" value=\"best\"/></integrator>");
+  result = run(render_mis);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("taken in its place: --integrator mis"));
+  EXPECT_THAT(run({"render", "scene.xml", "-o", "a.exr", "--integrator", "mist"}).err,
+              HasSubstr("unknown integrator 'mist'"));
 }
 
 TEST_F(CommandLine, InterruptKeepsTheCasesThatWereRun) {
@@ -291,8 +459,8 @@ TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsNamed) {
 TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   // Over the light's density, the radiance exceeds the largest float.
   write_file(path("scene.xml"), scene_xml(4, 4, "3e38"));
-  const std::vector<std::string> sampling{"--integrator", "mis", "--spp",  "8",
-                                          "--replicates", "2",   "--seed", "7"};
+  const std::vector<std::string> sampling{"--integrator",    "mis",        "--spp",  "8", "--replicates", "2",
+                                          "--replicates-by", "scrambling", "--seed", "7"};
   std::vector<std::string> command{"render", "scene.xml", "-o",      "a.exr",
                                    "--isa",  "scalar",    "--stats", "s.json"};
   command.insert(command.end(), sampling.begin(), sampling.end());
@@ -301,7 +469,8 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   EXPECT_GT(json("s.json").at("invalid_samples"), 0);
   ASSERT_THAT(result.err, HasSubstr("samples were not finite, or were negative"));
   const std::string start =
-      "  etendue render scene.xml --integrator mis --spp 8 --replicates 2 --seed 7 --replay ";
+      "  etendue render scene.xml --integrator mis --spp 8 --replicates 2 --replicates-by scrambling --seed "
+      "7 --replay ";
   const std::size_t at = result.err.find(start);
   ASSERT_NE(at, std::string::npos) << result.err;
   const std::string id = result.err.substr(at + start.size(), result.err.find('\n', at) - at - start.size());

@@ -36,10 +36,11 @@ void expect_edge(const std::string& filter, const std::function<double(double)>&
     settings.integrator = integrator_from_name("light");
     settings.samples_per_pixel = samples;
     settings.replicates = 16;
+    settings.replicates_by = ReplicatesBy::scrambling;
     settings.seed = 12;
     settings.isa = isa;
     const RenderResult result = render(loaded.scene, settings);
-    EXPECT_EQ(result.counts.invalid_samples, 0);
+    EXPECT_EQ(result.invalid.count(), 0);
     for (int x = 0; x < 16; ++x) {
       double mean = 0, variance = 0;  // Of a column, whose pixels are alike and independent.
       for (int y = 0; y < rows; ++y) {

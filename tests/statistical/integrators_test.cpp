@@ -45,7 +45,7 @@ void expect_equal_means(const Scene& scene, int samples_per_pixel, double level,
         method.integrator == std::string("direct") ? 4 * samples_per_pixel : samples_per_pixel;
     RenderResult result =
         render(scene, render_settings(method.integrator, samples, 16, ++seed, method.heuristic));
-    EXPECT_EQ(result.counts.invalid_samples, 0) << what << ", " << method.name;
+    EXPECT_EQ(result.invalid.count(), 0) << what << ", " << method.name;
     films.push_back(std::move(result.film));
   }
   for (std::size_t m = 1; m < films.size(); ++m) {
@@ -194,20 +194,22 @@ TEST(Bits, AreTheSameForTilesInAnyOrder) {
     Film backwards(80, 80);
     const auto block = std::make_unique<SampleBlock>();
     const LightSampler light_sampler = light_sampler_for(settings.integrator, loaded.scene.lights);
-    std::vector<InvalidSample> invalid;
+    std::vector<Color<double>> means;
+    InvalidSamples invalid;
     for (int y = 64; y >= 0; y -= 32)
       for (int x = 64; x >= 0; x -= 32) {
+        const PixelRectangle tile{x, y, std::min(x + 32, 80), std::min(y + 32, 80)};
         TileJob job{.scene = &loaded.scene,
                     .light_sampler = &light_sampler,
                     .settings = &settings,
-                    .x_begin = x,
-                    .y_begin = y,
-                    .x_end = std::min(x + 32, 80),
-                    .y_end = std::min(y + 32, 80),
+                    .unit = {.pixels = tile, .replicates = 4, .samples_per_replicate = 4},
                     .block = block.get(),
-                    .film = &backwards,
+                    .means = &means,
                     .invalid = &invalid};
         kernel_for(settings.isa).render_tile(job);
+        for (std::size_t k = 0; k < means.size() / 4; ++k)
+          backwards.at(x + int(k) % tile.width(), y + int(k) / tile.width()) =
+              combine_replicates(std::span(means).subspan(4 * k, 4), 0);
       }
     EXPECT_EQ(differing_pixels(film, backwards), 0) << integrator;
   }

@@ -46,7 +46,7 @@ void expect_radiance(const Scene& scene, double exact, const std::string& what) 
   for (const Method& method : methods) {
     const RenderResult result =
         render(scene, render_settings(method.integrator, 1024, 4, 7, method.heuristic));
-    EXPECT_EQ(result.counts.invalid_samples, 0);
+    EXPECT_EQ(result.invalid.count(), 0);
     // All pixels see one point (up to 1e-5 of the distance).
     const RunningStatistics radiance = statistics_of_pixels(result.film, &Color<double>::g);
     const MeanTest test = t_test(radiance, exact, exact * exact * 1e-12);

@@ -29,7 +29,7 @@ constexpr int family_size = 2000;  // At least as many t-tests as are made below
 
 Film rendered(const Scene& scene, RenderSettings settings, const std::string& what) {
   RenderResult result = render(scene, settings);
-  EXPECT_EQ(result.counts.invalid_samples, 0) << what;
+  EXPECT_EQ(result.invalid.count(), 0) << what;
   return std::move(result.film);
 }
 Film rendered(const Scene& scene, std::string_view integrator, int samples, std::uint64_t seed,

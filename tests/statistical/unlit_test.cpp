@@ -39,10 +39,11 @@ RenderResult look(const View& view, const std::string& scene, Isa isa, int sampl
   settings.integrator = make_integrator(loaded.integrator, Dialect::nori_2012, unread);
   settings.samples_per_pixel = samples;
   settings.replicates = std::min(samples, 64);
+  settings.replicates_by = ReplicatesBy::scrambling;
   settings.seed = 3;
   settings.isa = isa;
   RenderResult result = render(loaded.scene, settings);
-  EXPECT_EQ(result.counts.invalid_samples, 0);
+  EXPECT_EQ(result.invalid.count(), 0);
   EXPECT_TRUE(unread.empty());
   return result;
 }

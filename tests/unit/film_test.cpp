@@ -22,7 +22,7 @@ Means random_means(std::size_t count, std::uint64_t seed) {
 
 bool same_bits(const PixelStatistics& a, const PixelStatistics& b) {
   return a.count == b.count && std::memcmp(&a.mean, &b.mean, sizeof a.mean) == 0 &&
-         std::memcmp(&a.m2, &b.m2, sizeof a.m2) == 0;
+         std::memcmp(&a.m2, &b.m2, sizeof a.m2) == 0 && std::memcmp(&a.m3, &b.m3, sizeof a.m3) == 0;
 }
 
 PixelStatistics sum(const Means& all, std::size_t first, std::size_t last) {
@@ -39,6 +39,9 @@ TEST(Film, CombinesToTheMeanAndDeviationOfTheUnion) {
   EXPECT_DOUBLE_EQ(pixel.m2.r, 14);
   EXPECT_DOUBLE_EQ(pixel.m2.g, 1400);
   EXPECT_EQ(pixel.m2.b, 0);
+  EXPECT_DOUBLE_EQ(pixel.m3.r, -8 - 1 + 27);
+  EXPECT_DOUBLE_EQ(pixel.m3.g, 18e3);
+  EXPECT_EQ(pixel.m3.b, 0);
   EXPECT_DOUBLE_EQ(standard_error(pixel).r, std::sqrt(14.0 / 2 / 3));
   EXPECT_EQ(standard_error(pixel).b, 0);
 }

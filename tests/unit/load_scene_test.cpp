@@ -53,7 +53,7 @@ TEST(Materials, ManyShapesHaveAsManyAsDiffer) {
   for (int i = 0; i < 300; ++i) shapes += shape(i % 3 == 0 ? "" : grey(0.25 * (i % 3)));
   const LoadedScene loaded = load_with(shapes);
   EXPECT_EQ(loaded.scene.geometry.count(), 300);
-  EXPECT_EQ(loaded.scene.materials.size(), 3u);
+  EXPECT_EQ(loaded.scene.materials.count(), 3);
 }
 
 TEST(Materials, WithUnknownKeysAreEachWarnedOf) {

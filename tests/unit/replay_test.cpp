@@ -30,12 +30,15 @@ class Replay : public testing::TestWithParam<const char*> {};
 
 TEST_P(Replay, SumsToThePixelOfTheScalarKernel) {
   LoadedScene loaded = small_scene();
-  for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol}) {
+  for (const auto& [sampler, replicates_by] : {std::pair{SamplerKind::independent, ReplicatesBy::block},
+                                               std::pair{SamplerKind::sobol, ReplicatesBy::block},
+                                               std::pair{SamplerKind::sobol, ReplicatesBy::scrambling}}) {
     loaded.scene.sampler = sampler;
     RenderSettings settings;
     settings.integrator = integrator_from_name(GetParam());
-    settings.samples_per_pixel = settings.replicates =
-        2;  // so that a replicate's mean is one sample's radiance
+    settings.samples_per_pixel = 2;
+    settings.replicates = 2;  // so that a replicate's mean is one sample's radiance
+    settings.replicates_by = replicates_by;
     settings.seed = 11;
     const RenderResult result = render(loaded.scene, settings);
     int lit = 0;

@@ -19,8 +19,17 @@ TEST(RunningStatistics, MatchesTheTextbook) {
   EXPECT_EQ(s.count, 8);
   EXPECT_DOUBLE_EQ(s.mean, 5);
   EXPECT_DOUBLE_EQ(s.m2, 32);
+  EXPECT_DOUBLE_EQ(s.m3, 42);
   EXPECT_DOUBLE_EQ(s.variance(), 32.0 / 7);
   EXPECT_DOUBLE_EQ(s.standard_error(), std::sqrt(32.0 / 7 / 8));
+  EXPECT_DOUBLE_EQ(s.skewness(), (42.0 / 8) / std::pow(32.0 / 8, 1.5));
+}
+
+TEST(RunningStatistics, SkewnessIsThatOfTheValues) {
+  EXPECT_TRUE(std::isnan(statistics_of({1, 2}).skewness()));
+  EXPECT_TRUE(std::isnan(statistics_of({2, 2, 2, 2}).skewness()));
+  EXPECT_DOUBLE_EQ(statistics_of({1, 2, 3}).skewness(), 0);
+  EXPECT_LT(statistics_of({-9, 2, 3, 3}).skewness(), -1);
 }
 
 TEST(RunningStatistics, ConstantValuesHaveExactlyNoVariance) {
@@ -64,6 +73,8 @@ TEST(RunningStatistics, CombiningEqualsAddingAll) {
   EXPECT_EQ(both.count, all.count);
   EXPECT_NEAR(both.mean, all.mean, 1e-13 * all.mean);
   EXPECT_NEAR(both.m2, all.m2, 1e-12 * all.m2);
+  EXPECT_NEAR(both.m3, all.m3, 1e-12 * all.m3);
+  EXPECT_NEAR(both.skewness(), 2, 0.5);  // of the exponential distribution
   EXPECT_EQ(combine(all, {}), all);
   EXPECT_EQ(combine({}, all), all);
 }

@@ -1,0 +1,133 @@
+#include "render_options.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+#include <string_view>
+
+namespace etendue::app {
+
+namespace {
+
+bool is_known(const Object& integrator) {
+  const std::vector<Plugin>& plugins = integrator_plugins();
+  return std::any_of(plugins.begin(), plugins.end(),
+                     [&](const Plugin& plugin) { return plugin.name == integrator.type; });
+}
+
+/// As one word of a shell.
+std::string shell_quoted(const std::string& text) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
+  if (text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  command.add_option("SCENE", options.scene_file, "Scene file (XML of the Nori family)")->required();
+  command
+      .add_option("-o,--output", options.outputs,
+                  "Image to write, .exr (radiance and its standard error) or .png (sRGB); may be repeated")
+      ->allow_extra_args(false);
+  command.add_option("--integrator", options.integrator, "Instead of the file's; see etendue info");
+  command.add_option("--sampler", options.sampler, "Instead of the file's: independent or sobol");
+  command.add_option("--light-sampler", options.light_sampler,
+                     "How lights are chosen, instead of the integrator's way: uniform, power or all");
+  command.add_option("--spp", options.samples_per_pixel, "Samples a pixel in all, instead of the file's")
+      ->check(whole_number(std::numeric_limits<int>::max()));
+  command
+      .add_option(
+          "--replicates", options.replicates,
+          "Alike parts that the samples of a pixel are split into, from which its error is estimated; "
+          "must divide --spp [the smallest divisor of at least 8 and at least spp / 64]")
+      ->check(whole_number(std::numeric_limits<int>::max()));
+  command.add_option(
+      "--replicates-by", options.replicates_by,
+      "block: consecutive samples of one sequence, for the least error; scrambling: a sequence "
+      "each, for intervals that are exact rather than careful [block]");
+  add_run_options(command, options.run);
+  command.add_option("--stats", options.stats_file, "JSON file for settings, times and counts");
+  command.add_option("--replay", options.replay,
+                     "X,Y,REPLICATE,SAMPLE: compute only this sample, and print each step of it");
+  command.add_flag("--quiet", options.is_quiet,
+                   "No progress and no warnings about the scene; bad samples are still reported");
+  command.add_flag("--strict", options.is_strict, "Warnings, such as an unknown key, are errors");
+  command.add_flag("--sample-order", options.is_in_sample_order,
+                   "Trace shadow rays in sample order, not aimed: slower, the same image");
+}
+
+RenderSettings settings_for(const RenderOptions& options, const LoadedScene& loaded) {
+  RenderSettings settings;
+  settings.samples_per_pixel = options.samples_per_pixel.value_or(loaded.samples_per_pixel);
+  if (settings.samples_per_pixel < 1)
+    throw InputError(
+        fmt::format("--spp {}: at least 1 sample a pixel is needed", settings.samples_per_pixel));
+  settings.replicates = options.replicates;
+  const int replicates = settings.replicate_count();
+  if (replicates < 1) throw InputError(fmt::format("--replicates {}: at least 1 is needed", replicates));
+  if (settings.samples_per_pixel % replicates != 0)
+    throw InputError(
+        fmt::format("--replicates {}: {} samples a pixel cannot be split into {} equal parts\n"
+                    "choose a number that divides {}, or take --spp {}",
+                    replicates, settings.samples_per_pixel, replicates, settings.samples_per_pixel,
+                    (settings.samples_per_pixel / replicates + 1) * std::int64_t(replicates)));
+  if (!options.replicates_by.empty()) settings.replicates_by = replicates_by_from_name(options.replicates_by);
+  settings.seed = options.run.seed;
+  settings.threads = options.run.threads;
+  settings.isa = options.run.isa();
+  settings.is_reordering = !options.is_in_sample_order;
+  return settings;
+}
+
+IntegratorSettings integrator_for(const RenderOptions& options, const LoadedScene& loaded, Dialect dialect,
+                                  std::vector<std::string>& warnings) {
+  const std::string& name = options.integrator;
+  const Object& in_file = loaded.integrator;
+  if (in_file.family.empty()) return name.empty() ? IntegratorSettings{} : integrator_from_name(name);
+  const auto pass_over = [&](const std::string& why) {
+    const IntegratorSettings asked = integrator_from_name(name);
+    warnings.push_back(
+        format_message(in_file.type_location, why, "taken in its place: --integrator " + name));
+    return asked;
+  };
+  if (!name.empty() && !is_known(in_file))
+    return pass_over(fmt::format("unknown integrator '{}'", in_file.type));
+  std::vector<UnreadKey> unread;
+  IntegratorSettings own;
+  try {
+    own = make_integrator(in_file, dialect, unread);
+  } catch (const InputError&) {
+    if (name.empty()) throw;
+    return name == in_file.type ? pass_over("this integrator has a key that is missing or bad")
+                                : integrator_from_name(name);
+  }
+  const bool is_named_so = name == in_file.type && !own.needs_lights();
+  if (!name.empty() && !is_named_so) {
+    const IntegratorSettings asked = integrator_from_name(name);
+    if (asked.name != own.name) return asked;
+  }
+  for (const UnreadKey& key : unread) warnings.push_back(key.message);
+  return own;
+}
+
+std::string replay_command(const RenderOptions& options, const InvalidSample& sample) {
+  std::string command = "etendue render " + shell_quoted(options.scene_file);
+  const auto add = [&](std::string_view option, const auto& value) {
+    command += fmt::format(" {} {}", option, value);
+  };
+  if (!options.integrator.empty()) add("--integrator", options.integrator);
+  if (!options.sampler.empty()) add("--sampler", options.sampler);
+  if (!options.light_sampler.empty()) add("--light-sampler", options.light_sampler);
+  if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
+  if (options.replicates) add("--replicates", *options.replicates);
+  if (!options.replicates_by.empty()) add("--replicates-by", options.replicates_by);
+  if (options.run.seed != 0) add("--seed", options.run.seed);
+  if (!options.run.dialect_name.empty()) add("--dialect", options.run.dialect_name);
+  add("--replay", fmt::format("{},{},{},{}", sample.x, sample.y, sample.replicate, sample.index));
+  return command;
+}
+
+}  // namespace etendue::app

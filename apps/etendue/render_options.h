@@ -1,0 +1,39 @@
+// The command line of `etendue render`, and what it and the scene file settle between them.
+#pragma once
+
+#include "render/render.h"
+#include "run_options.h"
+#include "scene/load_scene.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace etendue::app {
+
+struct RenderOptions {
+  std::string scene_file;
+  std::vector<std::string> outputs;
+  std::string integrator, sampler, light_sampler, replicates_by, stats_file, replay;
+  std::optional<int> samples_per_pixel, replicates;
+  RunOptions run;
+  bool is_quiet = false, is_strict = false, is_in_sample_order = false;
+};
+
+/// `options` must live as long as the command.
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// All but the integrator. Throws InputError with the option that does not fit.
+RenderSettings settings_for(const RenderOptions& options, const LoadedScene& loaded);
+
+/// The command line's integrator where it names one; the file's parameters hold where both mean the same.
+/// What is wrong with the file's integrator then does not matter. \param warnings gets what was passed over,
+/// and keys that nobody read
+IntegratorSettings integrator_for(const RenderOptions& options, const LoadedScene& loaded, Dialect dialect,
+                                  std::vector<std::string>& warnings);
+
+/// The command line that computes the same samples as this one, for one of them.
+std::string replay_command(const RenderOptions& options, const InvalidSample& sample);
+
+}  // namespace etendue::app

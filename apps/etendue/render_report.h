@@ -1,0 +1,35 @@
+// What a render says of itself: the JSON of --stats, warnings, bad samples.
+#pragma once
+
+#include "render_options.h"
+#include "scenefile/scene_desc.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace etendue::app {
+
+/// A render that has ended, and what it was made from.
+struct Rendering {
+  const RenderOptions& options;
+  const SceneDesc& description;
+  const LoadedScene& loaded;
+  const RenderSettings& settings;
+  std::uint64_t scene_hash;
+  RenderResult result;
+
+  int samples_per_pixel() const { return result.replicates * settings.samples_per_replicate(); }
+  std::int64_t pixels() const { return std::int64_t(result.film.width()) * result.film.height(); }
+  std::int64_t pixels_rendered() const;
+};
+
+nlohmann::ordered_json stats(const Rendering& rendering);
+
+/// On stderr, unless --quiet. Throws InputError with --strict.
+void warn(const RenderOptions& options, const std::vector<std::string>& warnings);
+
+/// On stderr: the first bad samples, and how to replay one.
+void report_invalid(const Rendering& rendering);
+
+}  // namespace etendue::app

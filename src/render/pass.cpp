@@ -1,0 +1,204 @@
+#include "render/pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <mutex>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace etendue {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// One thread's scratch, and what it has done in the pass.
+struct Worker {
+  std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
+  std::vector<Color<double>> means;
+  InvalidSamples invalid;
+  std::int64_t samples = 0;
+};
+
+/// Whether a pass goes on: asked by all threads, often.
+class StopWatch {
+ public:
+  StopWatch(const StopRequest* request, bool is_first_pass, std::size_t tiles)
+      : request_(request), is_first_pass_(is_first_pass), tiles_(tiles) {}
+
+  bool must_stop() {
+    if (!request_ || !request_->soon.load(std::memory_order_relaxed)) return false;
+    return !is_first_pass_ || request_->now.load(std::memory_order_relaxed) || takes_too_long();
+  }
+
+  void count_tile() { ++tiles_done_; }
+  std::size_t tiles_done() const { return tiles_done_; }
+
+  /// Of the pass; none before the first tile is done.
+  std::optional<double> seconds_left() const {
+    const std::size_t done = tiles_done_;
+    if (done == 0) return std::nullopt;
+    return seconds_since(start_) * double(tiles_ - done) / double(done);
+  }
+  bool is_waiting_for_pass() const { return request_ && request_->soon && is_first_pass_; }
+
+ private:
+  /// Where little is left the pass may come to its end, though the estimate was too low.
+  bool takes_too_long() {
+    constexpr double most_seconds = 10, most_seconds_once_begun = 20;
+    const std::optional<double> left = seconds_left();
+    const double all = left.value_or(0) + seconds_since(start_) - seconds_at_request();
+    if (left && all <= most_seconds) has_little_left_ = true;
+    return all > (has_little_left_ ? most_seconds_once_begun : most_seconds);
+  }
+
+  double seconds_at_request() {
+    double none = -1;
+    request_seconds_.compare_exchange_strong(none, seconds_since(start_));
+    return request_seconds_;
+  }
+
+  const StopRequest* request_;
+  const bool is_first_pass_;
+  const std::size_t tiles_;
+  const Clock::time_point start_ = Clock::now();
+  std::atomic<std::size_t> tiles_done_{0};
+  std::atomic<double> request_seconds_{-1};
+  std::atomic<bool> has_little_left_{false};
+};
+
+}  // namespace
+
+struct Passes::Threads {
+  const Scene& scene;
+  const RenderSettings& settings;
+  const ProgressCallback& progress;
+  const StopRequest* stop;
+  const Kernel& kernel;
+  const LightSampler light_sampler;
+  const int count;
+  tbb::task_arena arena;
+  tbb::enumerable_thread_specific<Worker> workers{};
+
+  /// False where it was stopped: nothing of the tile is in the film then.
+  bool render_tile(const WorkUnit& tile, const std::function<bool()>& must_stop, FilmStack& film) {
+    if (must_stop()) return false;
+    Worker& worker = workers.local();
+    TileJob job{.scene = &scene,
+                .light_sampler = &light_sampler,
+                .settings = &settings,
+                .unit = tile,
+                .block = worker.block.get(),
+                .means = &worker.means,
+                .invalid = &worker.invalid,
+                .must_stop = &must_stop};
+    kernel.render_tile(job);
+    if (job.is_stopped) return false;
+    const Color<double>* means = worker.means.data();
+    for (int y = tile.pixels.y_begin; y < tile.pixels.y_end; ++y)
+      for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, means += tile.replicates)
+        film.add(x, y, {means, std::size_t(tile.replicates)});
+    worker.samples += tile.samples_per_pixel() * tile.pixels.width() * tile.pixels.height();
+    return true;
+  }
+
+  /// Of all workers, which begin anew.
+  void take_counts(PassResult& result) {
+    for (Worker& worker : workers) {
+      result.counts.samples += worker.samples;
+      result.counts += worker.block->counts;
+      result.invalid.add(worker.invalid);
+      worker.samples = 0;
+      worker.block->counts = {};
+      worker.invalid = {};
+    }
+  }
+};
+
+Passes::Passes(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress,
+               const StopRequest* stop) {
+  const int threads = settings.threads > 0 ? settings.threads : available_threads();
+  threads_.reset(new Threads{scene, settings, progress, stop, kernel_for(settings.isa),
+                             light_sampler_for(settings.integrator, scene.lights), threads,
+                             tbb::task_arena(threads)});
+}
+
+Passes::~Passes() = default;
+
+double Passes::measure_pace() {
+  Threads& threads = *threads_;
+  constexpr int side_px = 8, along = 4;
+  constexpr double most_seconds = 0.05;
+  const int width = threads.scene.camera.width_px, height = threads.scene.camera.height_px;
+  const Clock::time_point start = Clock::now();
+  Worker worker;
+  double measured = 0;
+  for (int k = 0; k < along * along && seconds_since(start) < most_seconds; ++k) {
+    const int x = (2 * (k % along) + 1) * width / (2 * along),
+              y = (2 * (k / along) + 1) * height / (2 * along);
+    TileJob job{.scene = &threads.scene,
+                .light_sampler = &threads.light_sampler,
+                .settings = &threads.settings,
+                .unit = {.pixels = {x, y, std::min(x + side_px, width), std::min(y + side_px, height)},
+                         .samples_per_replicate = std::min(threads.settings.samples_per_replicate(), 16)},
+                .block = worker.block.get(),
+                .means = &worker.means,
+                .invalid = &worker.invalid};
+    threads.kernel.render_tile(job);
+    measured += double(job.unit.pixels.width()) * job.unit.pixels.height() * job.unit.samples_per_replicate;
+  }
+  const double samples = double(width) * height * threads.settings.samples_per_replicate();
+  return seconds_since(start) / measured * samples / threads.count;
+}
+
+PassResult Passes::render(FilmStack& film, int end) {
+  Threads& threads = *threads_;
+  const int first = int(film.last());
+  const std::vector<WorkUnit> tiles = tiles_of(
+      {{0, 0, film.width(), film.height()}, first, end - first, threads.settings.samples_per_replicate()},
+      threads.count);
+  const bool is_first_pass = film.last() == film.first();
+  const Clock::time_point start = Clock::now();
+  StopWatch watch(threads.stop, is_first_pass, tiles.size());
+  const std::function<bool()> must_stop = [&] { return watch.must_stop(); };
+  std::mutex progress_mutex;
+  film.begin_pass(std::uint64_t(end));
+  const auto render_tile = [&](std::size_t k) {
+    if (!threads.render_tile(tiles[k], must_stop, film)) return;
+    watch.count_tile();
+    if (!threads.progress) return;
+    const std::lock_guard lock(progress_mutex);
+    const double of_pass = double(watch.tiles_done()) / double(tiles.size());
+    threads.progress({(first + of_pass * (end - first)) / threads.settings.replicate_count(),
+                      watch.is_waiting_for_pass() ? watch.seconds_left() : std::nullopt});
+  };
+  threads.arena.execute(
+      [&] { tbb::parallel_for(std::size_t{0}, tiles.size(), render_tile, tbb::simple_partitioner{}); });
+
+  PassResult result;
+  threads.take_counts(result);
+  result.is_complete = watch.tiles_done() == tiles.size();
+  if (result.is_complete || is_first_pass)
+    film.commit_pass();
+  else
+    result = {};
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+int end_of_next_pass(int done, int replicates, double seconds_per_replicate, double pixels) {
+  constexpr double most = 1024;  // A thread keeps as many means for each pixel of its tile.
+  const double wanted = (1 + 4e-7 * pixels) / std::max(seconds_per_replicate, 1e-9);
+  const int left = replicates - done;
+  if (left <= most && left <= 2 * wanted) return replicates;
+  const std::int64_t step = std::bit_floor(unsigned(std::clamp(wanted, 1.0, most)));
+  return int(std::min<std::int64_t>((done / step + 1) * step, replicates));
+}
+
+}  // namespace etendue
