@@ -118,10 +118,12 @@ void measure(Scene& scene, const char* integrator, int seeds, int reference_samp
                          });
         ClassSums all;
         for (int c = 0; c < skewed; ++c) all.add(sums[std::size_t(c)]);
+        const double lit = all.bars + sums[skewed].bars;
         if (by == ReplicatesBy::block && replicates == 8) one_sequence = all.error_sq / all.bars;
-        fmt::print("{:<6} {:>4} {:<11}{:>3}  x {:5.2f}  {:5.1f} %  {:5.1f} |", integrator, samples,
-                   replicates_by_name(by), replicates, all.error_sq / all.bars / one_sequence,
-                   100 * all.covered / all.bars, std::sqrt(all.width_sq / all.error_sq));
+        fmt::print("{:<6} {:>4} {:<11}{:>3}  {:3.0f} %  x {:5.2f}  {:5.1f} %  {:5.1f} |", integrator, samples,
+                   replicates_by_name(by), replicates, 100 * all.bars / lit,
+                   all.error_sq / all.bars / one_sequence, 100 * all.covered / all.bars,
+                   std::sqrt(all.width_sq / all.error_sq));
         for (int c = 0; c < classes; ++c) {
           const ClassSums& s = sums[std::size_t(c)];
           if (s.bars > 0)
@@ -146,7 +148,8 @@ int main(int argc, char** argv) try {
   app.add_option("--reference", reference_samples, "Samples a pixel of the reference")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   fmt::print(
-      "integrator, samples a pixel, replicates; variance over that of one sequence; coverage of 95 % bars;\n"
+      "integrator, samples a pixel, replicates; share of lit pixels that are not skewed; of these: variance "
+      "over that of one sequence; coverage of 95 % bars;\n"
       "half a bar over the true standard deviation (root of mean squares); without skewed pixels | by "
       "class\n");
   for (const std::string& file : files) {
