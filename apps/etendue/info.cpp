@@ -65,6 +65,7 @@ Json describe_program() {
   json["threads"] = available_threads();
   json["dependencies"] = dependency_versions();
   json["integrators"] = describe(integrator_plugins());
+  json["light_samplers"] = describe(light_sampler_plugins());
   json["samplers"] = describe(sampler_plugins());
   json["cameras"] = describe(camera_plugins());
   json["filters"] = describe(filter_plugins());
@@ -86,7 +87,7 @@ void print(const Json& json) {
   for (const auto& [name, version] : json["dependencies"].items())
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
-  for (const char* family : {"integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures",
+  for (const char* family : {"integrators", "light_samplers", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures",
                              "media", "phases", "lights", "tests"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {

@@ -11,15 +11,27 @@
 
 namespace etendue {
 
-/// The 2-D random numbers of the paths i, i + 1 ... for one consumer; the `number`-th of `count`, where it
-/// takes several.
+/// Of the 2-D samples that one consumer takes at once: `number` of `count` that follow one another in one
+/// sequence, and which of its sequences.
+struct SampleNumber {
+  int number = 0, count = 1;
+  std::int32_t sequence = 0;
+};
+
+/// The 2-D random numbers of the paths i, i + 1 ... for one consumer.
 template <class F>
 Vec2<UInt<F>> sample_bits(const Scene& scene, const PathColumns& path, int i, std::uint32_t pair,
-                          int number = 0, int count = 1) {
-  UInt<F> index = load_lanes<UInt<F>>(&path.index[i]);
-  if (count > 1) index = index * UInt<F>(std::uint32_t(count)) + UInt<F>(std::uint32_t(number));
-  return sample_2d<F>(scene.sampler, load_lanes<UInt<F>>(&path.stream_lo[i]),
-                      load_lanes<UInt<F>>(&path.stream_hi[i]), index, pair);
+                          const SampleNumber& which = {}) {
+  using U = UInt<F>;
+  U index = load_lanes<U>(&path.index[i]), stream_lo = load_lanes<U>(&path.stream_lo[i]),
+    stream_hi = load_lanes<U>(&path.stream_hi[i]);
+  if (which.count > 1) index = index * U(std::uint32_t(which.count)) + U(std::uint32_t(which.number));
+  if (which.sequence > 0) {
+    const std::uint64_t other = hash64(std::uint64_t(which.sequence));
+    stream_lo = stream_lo ^ U(std::uint32_t(other));
+    stream_hi = stream_hi ^ U(std::uint32_t(other >> 32));
+  }
+  return sample_2d<F>(scene.sampler, stream_lo, stream_hi, index, pair);
 }
 
 /// Starts the block's samples, each a path.
@@ -48,6 +60,7 @@ template <class F>
       store_lanes(&path.pdf[i], F(std::numeric_limits<float>::infinity()));
       store_lanes(&path.eta[i], F(1));
       store_lanes(block.radiance, i, black<F>());
+      for (LayerColumn& layer : block.layers) store_lanes(layer.radiance, i, black<F>());
     }
   };
   const Camera& camera = scene.camera;
@@ -63,13 +76,18 @@ template <class F>
   block.clock.finish(Stage::camera_rays);
 }
 
-/// Multiplies each sample's radiance by the weight that belongs to its place under the pixel filter: after
-/// the last look at what radiances are valid. Nothing to do for filters without negative lobes.
+/// Multiplies each sample's radiance, and its parts in layers, by the weight that belongs to its place under
+/// the pixel filter: after the last look at what radiances are valid. Nothing to do for filters without
+/// negative lobes.
 template <class F>
 void weigh_by_filter(const Scene& scene, SampleBlock& block) {
   if (!scene.filter.is_signed()) return;
-  for (int i = 0; i < block.padded_count; i += lane_count_v<F>)
-    store_lanes(block.radiance, i, load_lanes<F>(block.radiance, i) * load_lanes<F>(&block.filter_weight[i]));
+  const auto weigh = [&](ColorColumn& sums) {
+    for (int i = 0; i < block.padded_count; i += lane_count_v<F>)
+      store_lanes(sums, i, load_lanes<F>(sums, i) * load_lanes<F>(&block.filter_weight[i]));
+  };
+  weigh(block.radiance);
+  for (LayerColumn& layer : block.layers) weigh(layer.radiance);
 }
 
 }  // namespace etendue

@@ -16,13 +16,13 @@ struct LightSampleNumber {
   std::int32_t pass = 0;
 };
 
-/// The random numbers of one light sample of the paths i, i + 1 ...
+/// The random numbers of one light sample of the paths i, i + 1 ... Several samples follow one another in one
+/// sequence; each pass has its own, as every second or third point of one is badly distributed.
 template <class F>
-Vec2<UInt<F>> light_sample_bits(const Scene& scene, const LightSampler& light_sampler, const PathRules& rules,
-                                const PathColumns& path, int i, const LightSampleNumber& which) {
-  const int passes = light_sampler.passes();
+Vec2<UInt<F>> light_sample_bits(const Scene& scene, const PathRules& rules, const PathColumns& path, int i,
+                                const LightSampleNumber& which) {
   return sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::light, which.vertex),
-                        which.number * passes + which.pass, rules.light_samples()->count * passes);
+                        {which.number, rules.light_samples()->count, which.pass});
 }
 
 /// For each path: a light sample, its shadow segment, and what it adds to the radiance where it is visible.
@@ -39,7 +39,7 @@ template <class F>
     }
     const DirectLightSample<F> sample =
         sample_direct_light<F>(scene, light_sampler, rules, rules.bsdf_samples(which.vertex), vertex,
-                               light_sample_bits<F>(scene, light_sampler, rules, path, i, which), which.pass);
+                               light_sample_bits<F>(scene, rules, path, i, which), which.pass);
     store_lanes(block.unshadowed, i, sample.unshadowed * load_lanes<F>(path.throughput, i));
     store_mask<F>(&block.shadow_is_needed[i], sample.needs_shadow_ray);
     store_lanes(block.shadow_origin, i, sample.origin);

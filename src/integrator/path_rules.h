@@ -3,7 +3,7 @@
 
 #include "base/simd_math.h"
 
-#include <limits>
+#include <algorithm>
 #include <string_view>
 #include <variant>
 
@@ -82,6 +82,11 @@ class PathRules {
     if (const auto* by = std::get_if<ByBsdf>(&direct_light_)) return vertex == 0 ? by->bsdf_samples : 1;
     if (const auto* by = std::get_if<ByBoth>(&direct_light_)) return vertex == 0 ? by->bsdf_samples : 1;
     return length_ == PathLength::one_vertex ? 0 : 1;
+  }
+
+  /// The most that a sample takes of light samples, or of BSDF samples, at one vertex.
+  int most_samples() const {
+    return std::max({1, bsdf_samples(0), light_samples() ? light_samples()->count : 0});
   }
 
   /// The heuristic where light is found by both techniques; else null.

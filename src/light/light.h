@@ -3,9 +3,8 @@
 // Lanes of a packet may hold different lights, so a kind of light is a table with one column a field, and its
 // functions take a lane-varying row.
 // To add a kind: write light/NAME_light.h with the functions that light/light_table.h asks for, add it to
-// LightKinds in light/light_tables.h, and a maker to the table in scene/load_light.cpp (or, of a shape that
-// shines, scene/load_shape.cpp). The compiler names what is missing; tests/statistical/light_test.cpp does
-// not build before its list of kinds has the new one.
+// LightKinds in light/light_tables.h and to the makers in scene/load_light.cpp (a shape that shines:
+// load_shape.cpp). The compiler names what is missing, and so does tests/statistical/light_test.cpp.
 #pragma once
 
 #include "base/color.h"
@@ -96,7 +95,7 @@ class Lights : public LightTables {
   Color<F> infinite_radiance(std::int32_t k, const Vec3<F>& direction, const Mask<F>& m) const {
     const std::int32_t light = infinite_light(k);
     Color<F> radiance = black<F>();
-    with_infinite(light, [&](const auto& table, std::int32_t row) {
+    with_infinite_table(light, [&](const auto& table, std::int32_t row) {
       radiance = table.template radiance<F>(row, direction, m) *
                  Color<F>{F(red_[light]), F(green_[light]), F(blue_[light])};
     });
@@ -107,7 +106,7 @@ class Lights : public LightTables {
   template <class F>
   F infinite_pdf_solid_angle(std::int32_t k, const Vec3<F>& direction, const Mask<F>& m) const {
     F pdf(0);
-    with_infinite(infinite_light(k), [&](const auto& table, std::int32_t row) {
+    with_infinite_table(infinite_light(k), [&](const auto& table, std::int32_t row) {
       pdf = table.template pdf_solid_angle<F>(row, direction, m);
     });
     return pdf;
@@ -138,13 +137,6 @@ class Lights : public LightTables {
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       result =
           select(lanes, table.template sample<F>(request<F>(light, row, pmf, receiver, u, lanes)), result);
-    });
-  }
-
-  template <class Function>
-  void with_infinite(std::int32_t light, Function&& f) const {
-    with_table(kind_[light], [&](const auto& table) {
-      if constexpr (InfiniteLightTable<std::remove_cvref_t<decltype(table)>>) f(table, row_[light]);
     });
   }
 

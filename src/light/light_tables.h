@@ -61,6 +61,14 @@ class LightTables {
     });
   }
 
+  /// f(table, row) for a light that rays meet at infinity.
+  template <class Function>
+  void with_infinite_table(std::int32_t light, Function&& f) const {
+    with_table(kind_[light], [&](const auto& table) {
+      if constexpr (InfiniteLightTable<std::remove_cvref_t<decltype(table)>>) f(table, row_[light]);
+    });
+  }
+
   LightKinds tables_;
   LookupTable<std::int32_t> kind_, row_;  ///< Of each light, by its id: which table, and the row in it.
 };

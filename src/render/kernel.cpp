@@ -25,6 +25,8 @@ void set_invalid_aside(TileJob& job, SampleBlock& block, const PixelBlocks& pixe
           is_finite_nonnegative(sample.b))
         continue;
       radiance.r[s] = radiance.g[s] = radiance.b[s] = 0;
+      for (LayerColumn& layer : block.layers)
+        layer.radiance.r[s] = layer.radiance.g[s] = layer.radiance.b[s] = 0;
       if (s >= block.count) continue;
       job.invalid->add(
           {block.pixel_x[s], block.pixel_y[s], pixels.replicate_of(s), pixels.index_of(s), sample});
@@ -35,6 +37,8 @@ void set_invalid_aside(TileJob& job, SampleBlock& block, const PixelBlocks& pixe
 void render_tile(TileJob& job) {
   SampleBlock& block = *job.block;
   PixelBlocks pixels(job);
+  block.layers.resize(job.settings->layers.size());
+  for (std::size_t k = 0; k < block.layers.size(); ++k) block.layers[k].rule = job.settings->layers[k];
   block.clock.start();
   while (pixels.next(block)) {
     if (job.must_stop && (*job.must_stop)()) {

@@ -19,7 +19,8 @@ struct TileJob {
   const RenderSettings* settings;     ///< Of which only the unit says how many samples there are.
   WorkUnit unit;
   SampleBlock* block;  ///< Scratch of this thread.
-  /// Out: of each replicate of each pixel (row by row), the mean radiance.
+  /// Out: for the image, and then for each layer: of each replicate of each pixel (row by row), the mean
+  /// radiance.
   std::vector<Color<double>>* means;
   InvalidSamples* invalid;
   /// Asked between blocks, where set: ends the job before it is done.

@@ -87,7 +87,8 @@ struct Passes::Threads {
   tbb::enumerable_thread_specific<Worker> workers{};
 
   /// False where it was stopped: nothing of the tile is in the film then.
-  bool render_tile(const WorkUnit& tile, const std::function<bool()>& must_stop, FilmStack& film) {
+  bool render_tile(const WorkUnit& tile, const std::function<bool()>& must_stop,
+                   std::vector<FilmStack>& films) {
     if (must_stop()) return false;
     Worker& worker = workers.local();
     TileJob job{.scene = &scene,
@@ -101,9 +102,10 @@ struct Passes::Threads {
     kernel.render_tile(job);
     if (job.is_stopped) return false;
     const Color<double>* means = worker.means.data();
-    for (int y = tile.pixels.y_begin; y < tile.pixels.y_end; ++y)
-      for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, means += tile.replicates)
-        film.add(x, y, {means, std::size_t(tile.replicates)});
+    for (FilmStack& film : films)
+      for (int y = tile.pixels.y_begin; y < tile.pixels.y_end; ++y)
+        for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, means += tile.replicates)
+          film.add(x, y, {means, std::size_t(tile.replicates)});
     worker.samples += tile.samples_per_pixel() * tile.pixels.width() * tile.pixels.height();
     return true;
   }
@@ -157,8 +159,9 @@ double Passes::measure_pace() {
   return seconds_since(start) / measured * samples / threads.count;
 }
 
-PassResult Passes::render(FilmStack& film, int end) {
+PassResult Passes::render(std::vector<FilmStack>& films, int end) {
   Threads& threads = *threads_;
+  const FilmStack& film = films.front();
   const int first = int(film.last());
   const std::vector<WorkUnit> tiles = tiles_of(
       {{0, 0, film.width(), film.height()}, first, end - first, threads.settings.samples_per_replicate()},
@@ -168,9 +171,9 @@ PassResult Passes::render(FilmStack& film, int end) {
   StopWatch watch(threads.stop, is_first_pass, tiles.size());
   const std::function<bool()> must_stop = [&] { return watch.must_stop(); };
   std::mutex progress_mutex;
-  film.begin_pass(std::uint64_t(end));
+  for (FilmStack& each : films) each.begin_pass(std::uint64_t(end));
   const auto render_tile = [&](std::size_t k) {
-    if (!threads.render_tile(tiles[k], must_stop, film)) return;
+    if (!threads.render_tile(tiles[k], must_stop, films)) return;
     watch.count_tile();
     if (!threads.progress) return;
     const std::lock_guard lock(progress_mutex);
@@ -185,7 +188,7 @@ PassResult Passes::render(FilmStack& film, int end) {
   threads.take_counts(result);
   result.is_complete = watch.tiles_done() == tiles.size();
   if (result.is_complete || is_first_pass)
-    film.commit_pass();
+    for (FilmStack& each : films) each.commit_pass();
   else
     result = {};
   result.seconds = seconds_since(start);

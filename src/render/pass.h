@@ -31,9 +31,10 @@ class Passes {
   /// there.
   double measure_pace();
 
-  /// Renders [film.last(), end) and commits it. Where a stop ends the first pass of a film early, the tiles
-  /// that are whole are committed; of later passes nothing is.
-  PassResult render(FilmStack& film, int end);
+  /// Renders [films.front().last(), end) of all films, that of the image and of each layer, and commits it.
+  /// Where a stop ends the first pass of a film early, the tiles that are whole are committed; of later
+  /// passes nothing is.
+  PassResult render(std::vector<FilmStack>& films, int end);
 
  private:
   struct Threads;

@@ -21,8 +21,9 @@ class PixelBlocks {
         x_(area_.x_begin),
         y_(area_.y_begin) {
     while (samples_ <= block_capacity / (2 * width_ * height_)) (width_ > height_ ? height_ : width_) *= 2;
-    job.means->resize(std::size_t(area_.width()) * std::size_t(area_.height()) *
-                      std::size_t(job.unit.replicates));
+    const std::size_t images = 1 + job.settings->layers.size();
+    job.means->resize(images * image_size());
+    sums_.resize(images);
   }
 
   /// Which sample of its pixel stands at position `i` of the block.
@@ -57,17 +58,8 @@ class PixelBlocks {
 
   /// Takes in the block's radiance, and moves on.
   void take_means(const SampleBlock& block) {
-    int i = 0;
-    for (const Pixel& pixel : pixels_)
-      for_each_run([&](int replicate, int index, int count) {
-        sum_r_.add(&block.radiance.r[i], count, index);
-        sum_g_.add(&block.radiance.g[i], count, index);
-        sum_b_.add(&block.radiance.b[i], count, index);
-        i += count;
-        if (index + count < per_replicate_) return;
-        const double scale = 1.0 / per_replicate_;
-        mean_at(pixel, replicate) = {sum_r_.take() * scale, sum_g_.take() * scale, sum_b_.take() * scale};
-      });
+    take_means(block.radiance, 0);
+    for (std::size_t k = 0; k < block.layers.size(); ++k) take_means(block.layers[k].radiance, k + 1);
     first_sample_ += samples_in_block_;
     if (first_sample_ < samples_) return;
     first_sample_ = 0;
@@ -91,9 +83,28 @@ class PixelBlocks {
     return result;
   }
 
-  Color<double>& mean_at(const Pixel& pixel, int replicate) {
+  void take_means(const ColorColumn& radiance, std::size_t image) {
+    ReplicateColorSum& sum = sums_[image];
+    int i = 0;
+    for (const Pixel& pixel : pixels_)
+      for_each_run([&](int replicate, int index, int count) {
+        sum.r.add(&radiance.r[i], count, index);
+        sum.g.add(&radiance.g[i], count, index);
+        sum.b.add(&radiance.b[i], count, index);
+        i += count;
+        if (index + count < per_replicate_) return;
+        const double scale = 1.0 / per_replicate_;
+        mean_at(image, pixel, replicate) = {sum.r.take() * scale, sum.g.take() * scale, sum.b.take() * scale};
+      });
+  }
+
+  std::size_t image_size() const {
+    return std::size_t(area_.width()) * std::size_t(area_.height()) * std::size_t(job_.unit.replicates);
+  }
+  Color<double>& mean_at(std::size_t image, const Pixel& pixel, int replicate) {
     const int number = (pixel.y - area_.y_begin) * area_.width() + pixel.x - area_.x_begin;
-    return (*job_.means)[std::size_t(number) * std::size_t(job_.unit.replicates) + std::size_t(replicate)];
+    return (*job_.means)[image * image_size() + std::size_t(number) * std::size_t(job_.unit.replicates) +
+                         std::size_t(replicate)];
   }
 
   /// f(replicate of the unit, index of the first sample in it, count) over this block's samples of one pixel.
@@ -133,7 +144,7 @@ class PixelBlocks {
   int x_, y_;                          ///< Upper left of the current block.
   int first_sample_ = 0, samples_in_block_ = 0;
   std::vector<Pixel> pixels_;
-  ReplicateSum sum_r_, sum_g_, sum_b_;
+  std::vector<ReplicateColorSum> sums_;  ///< Of the image and of each layer.
 };
 
 }  // namespace etendue

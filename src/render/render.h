@@ -4,6 +4,7 @@
 #include "film/film.h"
 #include "integrator/block_counts.h"
 #include "integrator/integrator.h"
+#include "integrator/layer_rule.h"
 #include "render/invalid_samples.h"
 #include "render/isa.h"
 #include "sampler/replicates.h"
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace etendue {
 
@@ -25,7 +27,8 @@ struct RenderSettings {
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all that the process may use.
   Isa isa = Isa::scalar;
-  bool is_reordering = true;  ///< Aim shadow packets; off only to show that it changes nothing.
+  bool is_reordering = true;      ///< Aim shadow packets; off only to show that it changes nothing.
+  std::vector<LayerRule> layers;  ///< Parts of the image to be kept apart; each costs time and memory.
 
   int replicate_count() const { return replicates.value_or(default_replicates(samples_per_pixel)); }
   int samples_per_replicate() const { return samples_per_pixel / replicate_count(); }
@@ -40,6 +43,7 @@ struct RenderCounts : BlockCounts {
 
 struct RenderResult {
   Film film;  ///< Where interrupted, of `replicates` replicates; of a fragment, some pixels have count 0.
+  std::vector<Film> layers{};  ///< As the settings list them, of the same pixels and replicates.
   int replicates = 0;
   RenderCounts counts{};
   InvalidSamples invalid{};

@@ -30,4 +30,8 @@ class ReplicateSum {
   std::array<double, slots> slot_{};
 };
 
+struct ReplicateColorSum {
+  ReplicateSum r, g, b;
+};
+
 }  // namespace etendue

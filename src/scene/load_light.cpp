@@ -1,6 +1,8 @@
 #include "scene/load_light.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <utility>
 
 namespace etendue {
@@ -13,14 +15,62 @@ const Plugin area_plugin{"light",
                          {{"radiance", Parameter::Type::color, "1", "W/(m^2 sr)", "Emitted radiance"}},
                          {}};
 
+/// What a maker is told.
+struct LightDescription {
+  const Object& object;
+  const std::filesystem::path& directory;
+  std::vector<UnreadKey>& unread;
+  std::string name;
+};
+
+void add_point(const LightDescription& d, Lights& lights) {
+  const PointLight light = make_point_light(d.object, d.unread);
+  lights.add<PointLights>(light.intensity, d.name, light.position);
+}
+void add_spot(const LightDescription& d, Lights& lights) {
+  const SpotLight light = make_spot_light(d.object, d.unread);
+  lights.add<SpotLights>(light.intensity, d.name, light);
+}
+void add_directional(const LightDescription& d, Lights& lights) {
+  const DirectionalLight light = make_directional_light(d.object, d.unread);
+  lights.add<DirectionalLights>(light.irradiance, d.name, light.direction);
+}
+void add_distant_disk(const LightDescription& d, Lights& lights) {
+  const DistantDisk light = make_distant_disk(d.object, d.unread);
+  lights.add<DistantDiskLights>(light.radiance, d.name, light);
+}
+void add_constant(const LightDescription& d, Lights& lights) {
+  const DistantDisk light = make_constant_environment(d.object, d.unread);
+  lights.add<DistantDiskLights>(light.radiance, d.name, light);
+}
+void add_envmap(const LightDescription& d, Lights& lights) {
+  EnvmapLight light = make_envmap_light(d.object, d.directory, d.unread);
+  lights.add<EnvmapLights>({light.scale, light.scale, light.scale}, d.name, std::move(light.map),
+                           light.world_from_map);
+}
+
+/// The kinds that are no shapes.
+struct Maker {
+  const Plugin& plugin;
+  void (*add)(const LightDescription& description, Lights& lights);
+};
+const Maker makers[]{{point_plugin, add_point},
+                     {spot_plugin, add_spot},
+                     {directional_plugin, add_directional},
+                     {distant_disk_plugin, add_distant_disk},
+                     {constant_plugin, add_constant},
+                     {envmap_plugin, add_envmap}};
+
 }  // namespace
 
 bool is_light(const Object& object) { return object.family == "luminaire" || object.family == "emitter"; }
 
 const std::vector<Plugin>& light_plugins() {
-  static const std::vector<Plugin> plugins{area_plugin,        point_plugin,        spot_plugin,
-                                           directional_plugin, distant_disk_plugin, constant_plugin,
-                                           envmap_plugin};
+  static const std::vector<Plugin> plugins = [] {
+    std::vector<Plugin> all{area_plugin};
+    for (const Maker& maker : makers) all.push_back(maker.plugin);
+    return all;
+  }();
   return plugins;
 }
 
@@ -30,30 +80,14 @@ Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& un
 
 void add_light(const Object& description, const std::filesystem::path& directory, Lights& lights,
                std::vector<UnreadKey>& unread) {
+  const auto* maker = std::find_if(std::begin(makers), std::end(makers), [&](const Maker& candidate) {
+    return candidate.plugin.name == description.type;
+  });
+  if (maker == std::end(makers)) throw unknown_plugin(description, light_plugins());
   const std::string name = description.name.empty()
                                ? fmt::format("{} {}", description.type, lights.count() + 1)
                                : description.name;
-  const std::string& type = description.type;
-  if (type == point_plugin.name) {
-    const PointLight light = make_point_light(description, unread);
-    lights.add<PointLights>(light.intensity, name, light.position);
-  } else if (type == spot_plugin.name) {
-    const SpotLight light = make_spot_light(description, unread);
-    lights.add<SpotLights>(light.intensity, name, light);
-  } else if (type == directional_plugin.name) {
-    const DirectionalLight light = make_directional_light(description, unread);
-    lights.add<DirectionalLights>(light.irradiance, name, light.direction);
-  } else if (type == distant_disk_plugin.name || type == constant_plugin.name) {
-    const DistantDisk light = type == constant_plugin.name ? make_constant_environment(description, unread)
-                                                           : make_distant_disk(description, unread);
-    lights.add<DistantDiskLights>(light.radiance, name, light);
-  } else if (type == envmap_plugin.name) {
-    EnvmapLight light = make_envmap_light(description, directory, unread);
-    const Colorf scale{light.scale, light.scale, light.scale};
-    lights.add<EnvmapLights>(scale, name, std::move(light.map), light.world_from_map);
-  } else {
-    throw unknown_plugin(description, light_plugins());
-  }
+  maker->add({description, directory, unread, name}, lights);
 }
 
 }  // namespace etendue

@@ -45,7 +45,7 @@ TEST(Passes, NoBitDependsOnHowTheyAreCut) {
       for (const std::vector<int>& ends : {std::vector{13}, {1, 13}, {3, 4, 5, 13}, {1, 2, 4, 8, 12, 13}}) {
         RenderSettings settings = whole;
         settings.threads = int(ends.size());
-        FilmStack stack(37, 37);
+        std::vector<FilmStack> stack{FilmStack(37, 37)};
         Passes passes(loaded.scene, settings, no_progress, nullptr);
         InvalidSamples invalid;
         std::int64_t samples = 0;
@@ -57,7 +57,8 @@ TEST(Passes, NoBitDependsOnHowTheyAreCut) {
         }
         EXPECT_EQ(samples, 37 * 37 * 39);
         for (int y = 0; y < 37; ++y)
-          for (int x = 0; x < 37; ++x) ASSERT_EQ(stack.pixel(x, y), expected.film.at(x, y)) << x << ' ' << y;
+          for (int x = 0; x < 37; ++x)
+            ASSERT_EQ(stack.front().pixel(x, y), expected.film.at(x, y)) << x << ' ' << y;
         EXPECT_EQ(invalid.count(), expected.invalid.count());
         for (std::size_t i = 0; i < invalid.first().size(); ++i)
           EXPECT_TRUE(invalid.first()[i] == expected.invalid.first()[i]) << i;
@@ -73,10 +74,10 @@ TEST(Passes, FewerReplicatesAreARenderOfThatMany) {
     const ProgressCallback no_progress;
     const RenderSettings more = settings_of(39, 13, by);
     Passes passes(loaded.scene, more, no_progress, nullptr);
-    FilmStack stack(37, 37);
+    std::vector<FilmStack> stack{FilmStack(37, 37)};
     passes.render(stack, 5);
     for (int y = 0; y < 37; ++y)
-      for (int x = 0; x < 37; ++x) ASSERT_EQ(stack.pixel(x, y), fewer.at(x, y));
+      for (int x = 0; x < 37; ++x) ASSERT_EQ(stack.front().pixel(x, y), fewer.at(x, y));
   }
 }
 
@@ -89,12 +90,12 @@ TEST(Passes, AStopAtOnceLeavesAFragmentOfTheFirstPassAndNothingOfLaterOnes) {
     if (progress.fraction > 0.1) stop.soon = stop.now = true;
   };
   Passes passes(loaded.scene, settings, stop_after_some, &stop);
-  FilmStack fragment(37, 37);
+  std::vector<FilmStack> fragment{FilmStack(37, 37)};
   const PassResult first = passes.render(fragment, 1);
   EXPECT_FALSE(first.is_complete);
   std::int64_t rendered = 0;
   for (int y = 0; y < 37; ++y)
-    for (int x = 0; x < 37; ++x) rendered += fragment.pixel(x, y).count;
+    for (int x = 0; x < 37; ++x) rendered += fragment.front().pixel(x, y).count;
   EXPECT_GT(rendered, 0);
   EXPECT_LT(rendered, 37 * 37);
   EXPECT_EQ(first.counts.samples, rendered * 320);
@@ -104,15 +105,15 @@ TEST(Passes, AStopAtOnceLeavesAFragmentOfTheFirstPassAndNothingOfLaterOnes) {
     if (progress.fraction > 0.6) later.soon = true;
   };
   Passes more_passes(loaded.scene, settings, stop_in_second_pass, &later);
-  FilmStack whole(37, 37);
+  std::vector<FilmStack> whole{FilmStack(37, 37)};
   EXPECT_TRUE(more_passes.render(whole, 1).is_complete);
   const PassResult second = more_passes.render(whole, 2);
   EXPECT_FALSE(second.is_complete);
   EXPECT_EQ(second.counts.samples, 0);
   EXPECT_EQ(second.counts.camera_rays, 0);
-  EXPECT_EQ(whole.last(), 1u);
+  EXPECT_EQ(whole.front().last(), 1u);
   for (int y = 0; y < 37; ++y)
-    for (int x = 0; x < 37; ++x) ASSERT_EQ(whole.pixel(x, y).count, 1);
+    for (int x = 0; x < 37; ++x) ASSERT_EQ(whole.front().pixel(x, y).count, 1);
 }
 
 TEST(Render, SaysWhetherItIsWhole) {
@@ -139,13 +140,13 @@ TEST(Passes, AStopSoonLetsAShortFirstPassComeToItsEnd) {
   };
   const RenderSettings settings = settings_of(640, 10, ReplicatesBy::block);
   Passes passes(loaded.scene, settings, stop_at_once, &stop);
-  FilmStack stack(37, 37);
+  std::vector<FilmStack> stack{FilmStack(37, 37)};
   const PassResult first = passes.render(stack, 2);
   EXPECT_TRUE(first.is_complete && has_waited);
   EXPECT_EQ(first.counts.samples, 37 * 37 * 128);
   EXPECT_FALSE(passes.render(stack, 3).is_complete);
   for (int y = 0; y < 37; ++y)
-    for (int x = 0; x < 37; ++x) ASSERT_EQ(stack.pixel(x, y).count, 2);
+    for (int x = 0; x < 37; ++x) ASSERT_EQ(stack.front().pixel(x, y).count, 2);
 }
 
 TEST(Passes, TakeAboutASecondAndEndAtRoundNumbers) {

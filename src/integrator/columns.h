@@ -1,0 +1,91 @@
+// Numbers of a block of samples, one after the other: what stages load packets of lanes from, and store to.
+#pragma once
+
+#include "base/lane_vec.h"
+#include "geometry/ray.h"
+#include "light/receiver.h"
+
+#include <array>
+#include <cstdint>
+
+namespace etendue {
+
+inline constexpr int block_capacity = 1024;
+
+template <class T>
+struct alignas(64) Column : std::array<T, block_capacity> {};
+
+struct Vec3Column {
+  Column<float> x, y, z;
+};
+struct ColorColumn {
+  Column<float> r, g, b;
+};
+
+template <class F>
+Vec3<F> load_lanes(const Vec3Column& column, int i) {
+  return {load_lanes<F>(&column.x[i]), load_lanes<F>(&column.y[i]), load_lanes<F>(&column.z[i])};
+}
+template <class F>
+void store_lanes(Vec3Column& column, int i, const Vec3<F>& v) {
+  store_lanes(&column.x[i], v.x);
+  store_lanes(&column.y[i], v.y);
+  store_lanes(&column.z[i], v.z);
+}
+template <class F>
+Color<F> load_lanes(const ColorColumn& column, int i) {
+  return {load_lanes<F>(&column.r[i]), load_lanes<F>(&column.g[i]), load_lanes<F>(&column.b[i])};
+}
+template <class F>
+void store_lanes(ColorColumn& column, int i, const Color<F>& c) {
+  store_lanes(&column.r[i], c.r);
+  store_lanes(&column.g[i], c.g);
+  store_lanes(&column.b[i], c.b);
+}
+
+/// Rays as they are cast.
+struct RayColumns {
+  Vec3Column origin, direction;  ///< The direction is unit.
+  Column<float> t_near, t_far;
+  Column<std::int32_t> is_active;  ///< -1: cast it; 0: not.
+};
+
+/// What they hit; geometry -1: nothing.
+struct HitColumns {
+  Column<float> t, u, v;
+  Vec3Column ng;  ///< Not normalised.
+  Column<std::int32_t> geometry, primitive;
+};
+
+/// The ray i, or the packet from i on; likewise below.
+template <class F>
+Ray<F> load_ray(const RayColumns& rays, int i) {
+  return {load_lanes<F>(rays.origin, i), load_lanes<F>(rays.direction, i)};
+}
+template <class F>
+Hit<F> load_hit(const HitColumns& hits, int i) {
+  return {load_lanes<F>(&hits.t[i]),
+          {load_lanes<F>(&hits.u[i]), load_lanes<F>(&hits.v[i])},
+          load_lanes<F>(hits.ng, i),
+          load_lanes<Int<F>>(&hits.geometry[i]),
+          load_lanes<Int<F>>(&hits.primitive[i])};
+}
+
+struct ReceiverColumns {
+  Vec3Column position, ng, ns;
+  Column<std::int32_t> lit_sides;
+};
+template <class F>
+Receiver<F> load_receiver(const ReceiverColumns& receivers, int i) {
+  return {load_lanes<F>(receivers.position, i), load_lanes<F>(receivers.ng, i),
+          load_lanes<F>(receivers.ns, i), load_lanes<Int<F>>(&receivers.lit_sides[i])};
+}
+template <class F>
+void store_receiver(ReceiverColumns& receivers, int i, const Receiver<F>& receiver) {
+  store_lanes(receivers.position, i, receiver.position);
+  store_lanes(receivers.ng, i, receiver.ng);
+  store_lanes(receivers.ns, i, receiver.ns);
+  store_lanes(&receivers.lit_sides[i], receiver.lit_sides);
+}
+
+}  // namespace etendue
