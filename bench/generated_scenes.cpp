@@ -44,12 +44,9 @@ Phong glossy(float exponent) {
   return phong;
 }
 
-}  // namespace
-
-Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
+/// The terrain and the balls above it.
+Geometry terrain(int grid, bool has_normals) {
   Geometry geometry;
-  Lights lights;
-  const Materials materials({Diffuse{}, glossy(50)});
   geometry.add_mesh(tessellate(grid, has_normals,
                                [](double u, double v) {
                                  const double x = 10 * v - 5, z = 10 * u - 5;
@@ -71,6 +68,34 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
                                  }),
                       {ball % 2, -1});
   }
+  return geometry;
+}
+
+Scene seen_from_the_front(Geometry geometry, Lights lights, int width_px, int height_px) {
+  Camera camera;
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  camera.origin = {0, 3, 8};
+  const Vec3f forward = normalize(Vec3f{0, -0.35f, -1}), right{1, 0, 0}, up = cross(right, forward);
+  camera.per_px_x = right * (1.2f / float(width_px));
+  camera.per_px_y = up * (-0.8f / float(height_px));
+  camera.at_film_origin = forward - right * 0.6f + up * 0.4f;
+  RayCaster rays(geometry);
+  return {.camera = camera,
+          .filter = PixelFilter::box(),
+          .geometry = std::move(geometry),
+          .rays = std::move(rays),
+          .materials = Materials({Diffuse{}, glossy(50)}),
+          .lights = std::move(lights),
+          .medium = std::nullopt,
+          .sampler = SamplerKind::sobol};
+}
+
+}  // namespace
+
+Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
+  Geometry geometry = terrain(grid, has_normals);
+  Lights lights;
   for (int light = 0; light < 4; ++light) {
     const double corner_x = (light & 1 ? 3 : -3) - 0.5, corner_z = (light & 2 ? 3 : -3) - 0.5;
     const std::int32_t id = geometry.add_mesh(tessellate(4, false,
@@ -82,24 +107,30 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals) {
     lights.add<MeshLights>({radiance, radiance, radiance}, "light " + std::to_string(light), geometry, id);
   }
 
-  Camera camera;
-  camera.width_px = width_px;
-  camera.height_px = height_px;
-  camera.origin = {0, 3, 8};
-  const Vec3f forward = normalize(Vec3f{0, -0.35f, -1}), right{1, 0, 0}, up = cross(right, forward);
-  camera.per_px_x = right * (1.2f / float(width_px));
-  camera.per_px_y = up * (-0.8f / float(height_px));
-  camera.at_film_origin = forward - right * 0.6f + up * 0.4f;
+  return seen_from_the_front(std::move(geometry), std::move(lights), width_px, height_px);
+}
 
-  RayCaster rays(geometry);
-  return {.camera = camera,
-          .filter = PixelFilter::box(),
-          .geometry = std::move(geometry),
-          .rays = std::move(rays),
-          .materials = materials,
-          .lights = std::move(lights),
-          .medium = std::nullopt,
-          .sampler = SamplerKind::sobol};
+Scene swarm_scene(int light_count, int width_px, int height_px) {
+  constexpr int grid = 65;
+  Geometry geometry = terrain(grid, false);
+  Lights lights;
+  // Evenly spread in a box above the terrain (Roberts' sequence), of one power together.
+  const auto place = [](int k, double step, double size) {
+    const double share = step * (k + 1);
+    return size * (share - std::floor(share) - 0.5);
+  };
+  const float side = 1 / std::sqrt(float(light_count)), radiance = 10;
+  for (int k = 0; k < light_count; ++k) {
+    const Vec3f corner{float(place(k, 0.8191725133961645, 8)), float(3 + place(k, 0.6710436067037893, 2)),
+                       float(place(k, 0.5497004779019703, 8))};
+    Mesh square;
+    square.positions = {corner, corner + Vec3f{side, 0, 0}, corner + Vec3f{side, 0, side},
+                        corner + Vec3f{0, 0, side}};
+    square.indices = {0, 1, 2, 0, 2, 3};
+    const std::int32_t id = geometry.add_mesh(square, {0, k});
+    lights.add<MeshLights>({radiance, radiance, radiance}, "", geometry, id);
+  }
+  return seen_from_the_front(std::move(geometry), std::move(lights), width_px, height_px);
 }
 
 }  // namespace etendue::bench

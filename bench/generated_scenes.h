@@ -10,4 +10,7 @@ namespace etendue::bench {
 /// has_normals whether the meshes have vertex normals
 Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals);
 
+/// The same terrain under a swarm of square mesh lights that shine down, of one area together.
+Scene swarm_scene(int light_count, int width_px, int height_px);
+
 }  // namespace etendue::bench

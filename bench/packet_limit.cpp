@@ -106,6 +106,7 @@ struct Recording {
 
 struct Measurement {
   double samples = 0, render_seconds = 0;
+  double unaimed_seconds = 0;  ///< Of the render with its shadow rays in sample order.
   double camera_seconds = 0, bounce_seconds = 0, shadow_seconds = 0;  ///< Bare.
   std::int64_t bounce_rays = 0;
   double lane_occupancy = 0;
@@ -126,6 +127,9 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   InvalidSamples invalid;
   const auto block = std::make_unique<SampleBlock>();
   const auto recording_block = std::make_unique<SampleBlock>();
+  const auto unaimed_block = std::make_unique<SampleBlock>();
+  RenderSettings unaimed_settings = settings;
+  unaimed_settings.is_reordering = false;
   Recording camera, bounces;
   const BlockWatcher record{
       .on_light_sample = [&](const SampleBlock& b, int vertex, int,
@@ -161,6 +165,11 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
     const double start = thread_seconds();
     kernel.render_tile(job);
     sum.render_seconds += thread_seconds() - start;
+    job.settings = &unaimed_settings;
+    job.block = unaimed_block.get();
+    const double start_unaimed = thread_seconds();
+    kernel.render_tile(job);
+    sum.unaimed_seconds += thread_seconds() - start_unaimed;
     sum.camera_seconds += camera.cast_bare(scene.rays, kernel.lanes, Coherence::coherent);
     sum.bounce_seconds += bounces.cast_bare(scene.rays, kernel.lanes, Coherence::incoherent);
     sum.shadow_seconds += camera.cast_bare_shadows(scene.rays, kernel.lanes) +
@@ -196,11 +205,13 @@ int main(int argc, char** argv) try {
   double most_samples = 25e6;
   std::string integrator_name = "light";
   std::vector<std::string> isa_names, scene_files;
-  std::vector<int> grids{65, 700}, sample_counts{64, 1024};
+  std::vector<int> grids{65, 700}, sample_counts{64, 1024}, light_counts;
   app.add_flag("--json", is_json, "JSON on standard output");
   app.add_flag("--normals", has_normals, "Meshes with vertex normals");
   app.add_option("--integrator", integrator_name, "As of etendue render")->capture_default_str();
   app.add_option("--scene", scene_files, "Scene files of your own, instead of the generated ones");
+  app.add_option("--lights", light_counts, "Numbers of lights: a swarm of them above the terrain instead")
+      ->delimiter(',');
   app.add_option("--grids", grids, "Sizes of the scene: 2 grid^2 triangles and more")->delimiter(',');
   app.add_option("--spp", sample_counts, "Samples a pixel")->delimiter(',');
   app.add_option("--isa", isa_names, "Instruction sets; all that this machine has unless given")
@@ -224,9 +235,10 @@ int main(int argc, char** argv) try {
         const double fraction = m.bare_seconds() / m.render_seconds;
         fmt::print(
             text,
-            "  {:<6} {:>4} samples a pixel: {:6.2f} M samples/s, limit {:6.2f}, fraction_of_limit {:.3f}\n",
+            "  {:<6} {:>4} samples a pixel: {:6.2f} M samples/s, limit {:6.2f}, fraction_of_limit {:.3f}, "
+            "{:.2f} x sample order\n",
             isa_name(isa), samples_per_pixel, 1e-6 * m.samples / m.render_seconds,
-            1e-6 * m.samples / m.bare_seconds(), fraction);
+            1e-6 * m.samples / m.bare_seconds(), fraction, m.unaimed_seconds / m.render_seconds);
         if (m.bounce_rays > 0)
           fmt::print(text,
                      "         lane_occupancy {:.3f}; bare rays: camera {:.0f} %, bounces {:.0f} % ({:.2f} M "
@@ -250,6 +262,7 @@ int main(int argc, char** argv) try {
                         {"samples_per_second", m.samples / m.render_seconds},
                         {"limit_samples_per_second", m.samples / m.bare_seconds()},
                         {"fraction_of_limit", fraction},
+                        {"speed_over_sample_order", m.unaimed_seconds / m.render_seconds},
                         {"lane_occupancy", m.lane_occupancy},
                         {"stages", stages}});
       }
@@ -264,7 +277,9 @@ int main(int argc, char** argv) try {
       if (row["scene"] == name) row["speed_up_2_threads"] = ratio;
   };
   for (const std::string& file : scene_files) measure_scene(load_scene(read_nori_xml(file)).scene, file);
-  if (scene_files.empty())
+  for (const int count : light_counts)
+    measure_scene(bench::swarm_scene(count, width_px, height_px), fmt::format("swarm of {} lights", count));
+  if (scene_files.empty() && light_counts.empty())
     for (const int grid : grids) {
       const Scene scene = bench::terrain_scene(grid, width_px, height_px, has_normals);
       measure_scene(scene, fmt::format("terrain, {} triangles{}", scene.geometry.triangle_count(),

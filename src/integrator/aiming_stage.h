@@ -10,6 +10,19 @@
 
 namespace etendue {
 
+/// The parts of a block whose shadow rays are ordered each by itself: of one that has many pixels, which come
+/// in Morton order, the quarters.
+inline std::int32_t aimed_parts(const SampleBlock& block) { return block.is_one_pixel ? 1 : 4; }
+
+/// Whether ordering the shadow rays makes them faster: they start near each other, as those of later vertices
+/// do not, and enough of them aim at one light, else a packet starts all over its part and aims at many. The
+/// least number is measured (docs/performance.md).
+/// \param lights among which each ray has chosen its own
+inline bool is_worth_aiming(const SampleBlock& block, int vertex, std::int32_t lights) {
+  constexpr std::int32_t least_rays = 6;
+  return vertex == 0 && block.path.count / (least_rays * aimed_parts(block)) >= lights;
+}
+
 /// Whether shadow packets that aim at one piece of one light are best traced as one: not where most lights
 /// are finely built. Most lights are taken for most rays.
 inline bool are_aimed_packets_coherent(const Lights& lights) {
@@ -23,7 +36,7 @@ inline void aim_shadow_rays(const Scene& scene, SampleBlock& block) {
   // Morton order, is split into quarters and each light into few pieces; a block of one pixel, each light
   // into many.
   constexpr std::int32_t most_bins = 256;
-  const std::int32_t quarters = block.is_one_pixel ? 1 : 4, piece_shift = block.is_one_pixel ? 0 : 2;
+  const std::int32_t quarters = aimed_parts(block), piece_shift = block.is_one_pixel ? 0 : 2;
   const std::int32_t aims = scene.lights.count() * (light_pieces >> piece_shift);
   int shift = 0;
   while (((aims - 1) >> shift) >= most_bins / quarters) ++shift;

@@ -81,14 +81,16 @@ template <class F>
 template <class F>
 void add_light_samples(const Scene& scene, const LightSampler& light_sampler, SampleBlock& block,
                        const PathRules& rules, int vertex, bool is_reordering) {
+  const std::int32_t lights_a_pass = light_sampler.passes() > 1 ? 1 : scene.lights.count();
+  const bool is_aimed = is_reordering && is_worth_aiming(block, vertex, lights_a_pass);
   for (int number = 0; number < rules.light_samples()->count; ++number)
     for (std::int32_t pass = 0; pass < light_sampler.passes(); ++pass) {
       sample_lights<F>(scene, light_sampler, block, rules, {vertex, number, pass});
-      if (is_reordering)
+      if (is_aimed)
         aim_shadow_rays(scene, block);
       else
         keep_shadow_rays_in_order(block);
-      const bool is_coherent = is_reordering && are_aimed_packets_coherent(scene.lights);
+      const bool is_coherent = is_aimed && are_aimed_packets_coherent(scene.lights);
       add_unshadowed<F>(scene, block, vertex, is_coherent ? Coherence::coherent : Coherence::incoherent);
       if (block.watcher) block.watcher->on_light_sample(block, vertex, number, pass);
     }
