@@ -5,10 +5,11 @@ usage: check_scene_format.py ETENDUE PAGE   compare the page with what the progr
        check_scene_format.py --self-test     plant one difference of each kind and see it found
 
 Compared: every plugin of every family, every parameter of it, its type, default and unit; and what the integrators'
-names stand for, which a render of one pixel tells. In the page a family is a heading `## Name`, a plugin in it `###
-`name``, its parameters a table `| parameter | type | default | unit | meaning |`. Under an integrator that is another
-name of one, that one is named. A row of the table of dialects (its head has all their names) that names integrators
-first names, first in each other cell, what they stand for there. Other words may be any.
+names stand for, which a render of one pixel tells. In the page a family is a heading `## Name` (`## Two
+words` for `two_words`), a plugin in it `### `name``, its parameters a table `| parameter | type | default | unit |
+meaning |`. Under an integrator that is another name of one, that one is named. A row of the table of dialects (its head
+has all their names) that names integrators first names, first in each other cell, what they stand for there. Other
+words may be any.
 """
 
 import copy
@@ -19,8 +20,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-FAMILIES = ["integrators", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "media", "phases", "lights",
-            "tests"]
+FAMILIES = ["integrators", "light_samplers", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures", "media",
+            "phases", "lights", "tests"]
 HEAD = ["parameter", "type", "default", "unit", "meaning"]
 DIALECTS = ["nori-2012", "nori-eth", "nori"]
 SCENE = """<scene><integrator type="{}"/>
@@ -35,7 +36,7 @@ def plugins_of_page(text):
     is_in_table = False
     for line in text.splitlines():
         if line.startswith("## "):
-            name = line[3:].strip().lower()
+            name = line[3:].strip().lower().replace(" ", "_")
             family, plugin = (name if name in FAMILIES else None), None
         elif family and (heading := re.fullmatch(r"### `([^`]+)`\s*", line)):
             plugin = (family, heading[1])
@@ -190,6 +191,10 @@ def with_info(change):
 # Each: what is planted, the page, what the program says, and words of the difference that must be found (None: none).
 PLANTED = [
     ("nothing", PAGE, INFO, None),
+    ("a plugin missing from a family of two words", PAGE + "## Light samplers\n### `one`\n", INFO | {"light_samplers": [
+        {"name": "one", "parameters": []}, {"name": "two", "parameters": []}]}, "light_samplers: 'two' is missing"),
+    ("a family of two words", PAGE + "## Light samplers\n### `one`\n",
+     INFO | {"light_samplers": [{"name": "one", "parameters": []}]}, None),
     ("a plugin missing", PAGE.replace("### `fisheye`", ""), INFO, "'fisheye' is missing"),
     ("a plugin too many", PAGE.replace("## Other", "### `old`\n## Other"), INFO, "the page has 'old'"),
     ("a plugin in another family", PAGE.replace("## Cameras", "## Lights"), INFO, "'pinhole' is missing"),
