@@ -23,7 +23,7 @@ std::string light_sample_text(const Scene& scene, const SampleTrace::LightSample
                                                       : "blocked";
   if (sample.hidden_by)
     shadow_ray +=
-        fmt::format(" by shape {}, triangle {}", sample.hidden_by->geometry, sample.hidden_by->primitive);
+        fmt::format(" by shape {}, triangle {}", sample.hidden_by->geometry + 1, sample.hidden_by->primitive);
   return fmt::format(
       "  light sample      {}\n"
       "    end             {} m\n"

@@ -49,7 +49,7 @@ struct SampleTrace {
     Vec3f position;  ///< Not of nothing.
     std::optional<Surface> surface;
     std::optional<LightSample> light_sample;  ///< The last, where the integrator takes several.
-    std::optional<BsdfSample> bsdf_sample;    ///< Likewise.
+    std::optional<BsdfSample> bsdf_sample;    ///< Of this branch.
     Colorf radiance;                          ///< Of the path, up to and with this vertex.
   };
 
