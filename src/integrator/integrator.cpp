@@ -188,7 +188,12 @@ IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std:
         fmt::format("light sampler '{}': the integrator {} takes no samples of the lights\n"
                     "take light, mis, path_ems or path_mis",
                     name, integrator.name));
-  return {integrator.name, integrator.path_rules()->with_light_sampler(name)};
+  // These rules may have a name of their own: every_light is light with the sampler `all`.
+  const PathRules rules = integrator.path_rules()->with_light_sampler(name);
+  const auto* row = std::find_if(std::begin(table), std::end(table), [&](const Row& candidate) {
+    return candidate.rules(Heuristic::balance) == rules;
+  });
+  return {row == std::end(table) ? integrator.name : row->canonical, rules};
 }
 
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights) {

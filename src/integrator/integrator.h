@@ -42,7 +42,7 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
 /// From the command line: a name, its parameters at their defaults. `direct` is BRDF sampling.
 IntegratorSettings integrator_from_name(std::string_view name);
 
-/// The same with another light sampler. Throws InputError for an unknown one, and where the integrator
+/// The same with another light sampler, by the name that these rules have. Throws InputError for an unknown one, and where the integrator
 /// samples no lights.
 IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler);
 

@@ -8,7 +8,8 @@
 // sample; shadow rays pass through the medium undimmed, or its samples are not weighted, or by the density of
 // one channel alone; scattering in the medium has a cosine; Henyey and Greenstein's g has the wrong sign;
 // several light or BSDF samples are not divided by their number, or their weights do not count them, on
-// either side; every_light divides by the number of lights; the medium is cut off at the sphere around the
+// either side; the pmf of another light than the one met is in its density; every_light divides by the
+// number of lights; the medium is cut off at the sphere around the
 // shapes; whitted goes on from every surface.
 #include "film_statistics.h"
 #include "image/image_file.h"
@@ -25,7 +26,7 @@ namespace etendue {
 namespace {
 
 constexpr double family_level = 1e-5;
-constexpr int family_size = 2000;  // At least as many t-tests as are made below.
+constexpr int family_size = 2500;  // At least as many t-tests as are made below.
 
 Film rendered(const Scene& scene, RenderSettings settings, const std::string& what) {
   RenderResult result = render(scene, settings);
@@ -423,6 +424,22 @@ LoadedScene four_lights(const std::string& more = "") {
 
 TEST(DirectLight, OfEveryLightIsThatOfOneAtRandom) {
   expect_agreement(four_lights().scene, {{"every_light", 128}, {"light", 512}, {"mis", 512}}, "every light");
+}
+
+/// Lights of very unequal power, of which BSDF samples find all but the point: where the pmf in the density
+/// of a light that a ray has met is not that of its choice, weights do not add up to 1.
+TEST(DirectLight, IsTheSameByEveryLightSampler) {
+  const LoadedScene loaded =
+      four_lights(rectangle_xml({1.5, -1, 1.8}, {0.5, 0, 0}, {0, -0.5, 0}, light_xml(30)));
+  const Film expected = rendered(loaded.scene, render_settings("mis", 1024, 1024, 30), "mis, uniform");
+  std::uint64_t seed = 30;
+  for (const char* integrator : {"mis", "light", "average"})
+    for (const Plugin& sampler : light_sampler_plugins()) {
+      RenderSettings settings = render_settings(integrator, 512, 512, ++seed);
+      settings.integrator = with_light_sampler(settings.integrator, sampler.name);
+      const std::string what = std::string(integrator) + ", " + sampler.name;
+      expect_equal_means(rendered(loaded.scene, settings, what), expected, what);
+    }
 }
 
 RenderSettings several(const DirectLight& direct_light, int samples, std::uint64_t seed) {

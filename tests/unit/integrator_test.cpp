@@ -126,6 +126,8 @@ TEST(LightSamplerOfAnIntegrator, IsUniformUnlessAskedForAnother) {
   EXPECT_EQ(by_power.light_sampler(), "power");
   EXPECT_EQ(by_power.name, "mis");
   EXPECT_EQ(rules_of(with_light_sampler(by_power, "uniform")), rules_of(integrator_from_name("mis")));
+  EXPECT_EQ(with_light_sampler(integrator_from_name("every_light"), "uniform").name, "light");
+  EXPECT_EQ(with_light_sampler(integrator_from_name("light"), "all").name, "every_light");
   EXPECT_THAT(test::error_of([] { with_light_sampler(integrator_from_name("light"), "powr"); }),
               testing::AllOf(HasSubstr("unknown light sampler 'powr'"), HasSubstr("did you mean 'power'?"),
                              HasSubstr("uniform"), HasSubstr("all")));
