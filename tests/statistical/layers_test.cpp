@@ -1,0 +1,221 @@
+// Layers of an image: parts by technique, light and depth that add up to it, and of which each is what it is
+// called.
+//
+// No test of this file can fail by chance: where layers are other images, they are so bit for bit.
+// Seen to fail when: @@
+#include "test_scene.h"
+
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace etendue {
+namespace {
+
+constexpr int side_px = 48, samples = 16;
+
+constexpr std::int32_t light_count = 4;
+enum LightId : std::int32_t { rectangle, sphere, point, sky };
+
+struct SceneParts {
+  std::array<double, light_count> strength{6, 40, 5, 0.3};  ///< By light.
+  bool is_black = false;                                    ///< All surfaces, the mirror too.
+  bool has_mist = true;
+  const char* filter = "box";
+};
+
+LoadedScene scene_of(const SceneParts& parts = {}) {
+  const auto bsdf = [&](double albedo) { return diffuse_xml(parts.is_black ? 0 : albedo); };
+  std::string camera = camera_xml({0, -6, 2.5}, {0, 0, 0.7}, 45, side_px, "sobol");
+  const std::string box = "<rfilter type=\"box\"/>";
+  camera.replace(camera.find(box), box.size(), fmt::format("<rfilter type=\"{}\"/>", parts.filter));
+  std::string text = camera + rectangle_xml({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, bsdf(0.6)) +
+                     rectangle_xml({0, 3, 2}, {4, 0, 0}, {0, 0, 2}, bsdf(0.5)) +
+                     rectangle_xml({-2, 0, 3}, {0.7, 0, 0.2}, {0, -0.5, 0},
+                                   light_xml(parts.strength[rectangle]) + bsdf(0.5)) +
+                     sphere_xml({0.5, 0.5, 1.4}, 0.1, light_xml(parts.strength[sphere]) + bsdf(0.1)) +
+                     sphere_xml({1, -0.5, 0.6}, 0.6, bsdf(0.4)) +
+                     fmt::format(
+                         "<emitter type=\"point\"><color name=\"intensity\" value=\"{}\"/><point "
+                         "name=\"position\" value=\"2,-1,3\"/></emitter>\n"
+                         "<emitter type=\"constant\"><color name=\"radiance\" value=\"{}\"/></emitter>\n",
+                         parts.strength[point], parts.strength[sky]);
+  text += rectangle_xml({-2.5, 1, 1.5}, {0.3, 1, 0}, {0, 0, 1},
+                        parts.is_black ? bsdf(0) : "<bsdf type=\"mirror\"/>");
+  if (parts.has_mist)
+    text +=
+        "<medium type=\"homogeneous\"><color name=\"sigmaA\" value=\"0.02\"/><color name=\"sigmaS\" "
+        "value=\"0.1,0.15,0.2\"/><transform name=\"toWorld\"><scale value=\"3,3,2\"/><translate "
+        "value=\"-2,-1,0.1\"/></transform></medium>\n";
+  return load_scene_text(text);
+}
+
+/// Each replicate is one sample, so that a pixel's variance tells how large its samples are.
+RenderSettings settings_of(std::string_view integrator, const std::vector<LayerRule>& layers = {}) {
+  RenderSettings settings = render_settings(integrator, samples, samples, 3);
+  settings.replicates_by = ReplicatesBy::block;
+  settings.layers = layers;
+  return settings;
+}
+
+Film image(const SceneParts& parts, std::string_view integrator) {
+  return render(scene_of(parts).scene, settings_of(integrator)).film;
+}
+Film layer(const SceneParts& parts, std::string_view integrator, const LayerRule& rule) {
+  return render(scene_of(parts).scene, settings_of(integrator, {rule})).layers.at(0);
+}
+
+/// Pixels of which b is not a times a power of two, bit for bit.
+int differing_pixels(const Film& a, const Film& b, double power_of_two = 1) {
+  int count = 0;
+  for (int y = 0; y < side_px; ++y)
+    for (int x = 0; x < side_px; ++x) {
+      PixelStatistics scaled = a.at(x, y);
+      scaled.mean = scaled.mean * power_of_two;
+      scaled.m2 = scaled.m2 * (power_of_two * power_of_two);
+      scaled.m3 = scaled.m3 * (power_of_two * power_of_two * power_of_two);
+      count += !(scaled == b.at(x, y));
+    }
+  return count;
+}
+
+bool is_black(const Film& film) { return film.mean() == Color<double>{0, 0, 0}; }
+
+constexpr int any_depth = std::numeric_limits<int>::max();
+LayerRule of_depths(int least, int most) { return {{}, {}, least, most}; }
+LayerRule scattered_from(std::int32_t light, Technique technique) { return {light, technique, 1, any_depth}; }
+
+const std::vector<LayerRule> by_technique{{{}, Technique::light}, {{}, Technique::bsdf}};
+const std::vector<LayerRule> by_light{{rectangle, {}}, {sphere, {}}, {point, {}}, {sky, {}}};
+const std::vector<LayerRule> by_depth{of_depths(0, 0), of_depths(1, 1), of_depths(2, any_depth)};
+
+/// Every cell of the three together.
+std::vector<LayerRule> by_all() {
+  std::vector<LayerRule> rules;
+  for (LayerRule rule : by_depth)
+    for (const LayerRule& technique : by_technique)
+      for (const LayerRule& light : by_light) {
+        rule.technique = technique.technique;
+        rule.light = light.light;
+        rules.push_back(rule);
+      }
+  return rules;
+}
+
+/// Samples are added up in floats, in the image and in layers in different order: each addition rounds by
+/// 2^-24 of what there is. The weights of a filter have either sign, but are of one size.
+void expect_sum(const Film& image, const std::vector<Film>& layers, const std::string& what) {
+  constexpr double additions = 16;
+  int wrong = 0;
+  for (int y = 0; y < side_px; ++y)
+    for (int x = 0; x < side_px; ++x) {
+      Color<double> sum{0, 0, 0};
+      for (const Film& film : layers) sum = sum + film.at(x, y).mean;
+      const PixelStatistics& pixel = image.at(x, y);
+      for (const auto channel : {&Color<double>::r, &Color<double>::g, &Color<double>::b}) {
+        const double size =
+            std::hypot(pixel.mean.*channel, std::sqrt(pixel.m2.*channel / double(pixel.count)));
+        wrong += !(std::abs(sum.*channel - pixel.mean.*channel) <= additions * 0x1p-24 * size);
+      }
+    }
+  EXPECT_EQ(wrong, 0) << what << ": pixels of which the layers are not the sum";
+}
+
+class LayersOf : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(LayersOf, AddUpToTheImage) {
+  for (const char* filter : {"box", "mitchell"}) {
+    const LoadedScene loaded = scene_of({.filter = filter});
+    for (const auto& [what, rules] : {std::pair{"by technique", by_technique},
+                                      {"by light", by_light},
+                                      {"by depth", by_depth},
+                                      {"by all three", by_all()}}) {
+      const RenderResult result = render(loaded.scene, settings_of(GetParam(), rules));
+      ASSERT_EQ(result.layers.size(), rules.size());
+      EXPECT_FALSE(is_black(result.film));
+      expect_sum(result.film, result.layers, fmt::format("{}, {}", filter, what));
+    }
+  }
+}
+
+TEST_P(LayersOf, ThatTakeAllAreTheImageAndChangeNoBitOfIt) {
+  const LoadedScene loaded = scene_of({.filter = "mitchell"});
+  const RenderResult result = render(loaded.scene, settings_of(GetParam(), {LayerRule{}}));
+  EXPECT_EQ(differing_pixels(result.film, result.layers[0]), 0);
+  EXPECT_EQ(differing_pixels(result.film, image({.filter = "mitchell"}, GetParam())), 0);
+}
+
+TEST_P(LayersOf, HaveTheSameBitsForAnyNumberOfThreads) {
+  const LoadedScene loaded = scene_of();
+  RenderSettings settings = settings_of(GetParam(), by_all());
+  settings.threads = 1;
+  const std::vector<Film> by_one = render(loaded.scene, settings).layers;
+  settings.threads = 2;
+  const std::vector<Film> by_two = render(loaded.scene, settings).layers;
+  for (std::size_t k = 0; k < by_one.size(); ++k) EXPECT_EQ(differing_pixels(by_one[k], by_two[k]), 0) << k;
+}
+
+TEST_P(LayersOf, ALightAreTheImageWhereTheOthersAreBlack) {
+  const std::vector<Film> layers = render(scene_of().scene, settings_of(GetParam(), by_light)).layers;
+  for (std::size_t light = 0; light < light_count; ++light) {
+    SceneParts alone;
+    for (std::size_t other = 0; other < light_count; ++other)
+      if (other != light) alone.strength[other] = 0;
+    const bool is_found = light != point || settings_of(GetParam()).integrator.path_rules()->light_samples();
+    EXPECT_EQ(is_black(layers[light]), !is_found) << light;
+    EXPECT_EQ(differing_pixels(layers[light], image(alone, GetParam())), 0) << light;
+  }
+}
+
+TEST_P(LayersOf, DepthZeroAreTheImageOfBlackSurfaces) {
+  const Film black = image({.is_black = true, .has_mist = false}, GetParam());
+  EXPECT_FALSE(is_black(black));
+  EXPECT_EQ(differing_pixels(black, layer({.has_mist = false}, GetParam(), of_depths(0, 0))), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Named, LayersOf,
+                         ::testing::Values("light", "direct", "average", "mis", "every_light", "whitted",
+                                           "path_ems", "path_mats", "path_mis"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(Layers, OfOneScatteringAreTheImageOfTheDirectIntegrator) {
+  for (const auto& [paths, direct] :
+       {std::pair{"path_ems", "light"}, {"path_mats", "direct"}, {"path_mis", "mis"}}) {
+    EXPECT_EQ(differing_pixels(image({}, direct), layer({}, paths, of_depths(0, 1))), 0) << paths;
+    EXPECT_FALSE(is_black(layer({}, paths, of_depths(2, any_depth)))) << paths;
+    EXPECT_TRUE(is_black(layer({}, direct, of_depths(2, any_depth)))) << direct;
+  }
+}
+
+TEST(Layers, OfATechniqueAreHalfOfWhatItFindsAlone) {
+  for (const std::int32_t light : {rectangle, sphere, sky})
+    for (const auto& [technique, alone] :
+         {std::pair{Technique::light, "light"}, {Technique::bsdf, "direct"}}) {
+      const Film both = layer({}, "average", scattered_from(light, technique));
+      EXPECT_FALSE(is_black(both)) << light << ", " << alone;
+      EXPECT_EQ(differing_pixels(both, layer({}, alone, {light, {}, 1, any_depth}), 2), 0)
+          << light << ", " << alone;
+    }
+}
+
+TEST(Layers, OfTheCameraAndOfLightsThatNoRayMeetsAreOfOneTechnique) {
+  EXPECT_TRUE(is_black(layer({}, "mis", {{}, Technique::light, 0, 0})));
+  EXPECT_FALSE(is_black(layer({}, "mis", {{}, Technique::bsdf, 0, 0})));
+  EXPECT_TRUE(is_black(layer({}, "path_mis", {point, Technique::bsdf})));
+}
+
+TEST(Layers, LeaveOutWhatTheImageLeavesOut) {
+  // Samples of the sky are too strong for floats, the sky itself is not.
+  SceneParts parts;
+  parts.strength[sky] = 3e38;
+  const LoadedScene loaded = scene_of(parts);
+  for (const char* integrator : {"light", "mis", "path_ems"}) {
+    const RenderResult result = render(loaded.scene, settings_of(integrator, by_all()));
+    EXPECT_GT(result.invalid.count(), 1000);
+    expect_sum(result.film, result.layers, integrator);
+  }
+}
+
+}  // namespace
+}  // namespace etendue
