@@ -2,7 +2,9 @@
 // called.
 //
 // No test of this file can fail by chance: where layers are other images, they are so bit for bit.
-// Seen to fail when: @@
+// Seen to fail when: light samples count as BSDF samples, or light that is met as light samples; depths of
+// either are one off; a light's id is the piece of it; layers are not emptied for the next block; they lack
+// the filter's weights; they keep what invalid samples had.
 #include "test_scene.h"
 
 #include <array>

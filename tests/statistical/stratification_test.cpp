@@ -5,7 +5,11 @@
 // False-alarm rate of this file: 1e-6, fixed seeds. A bound is 0.5 of the factor measured (0.6 below 4), a
 // ratio of two variances of 2048 degrees of freedom each; over seeds its logarithm has a standard deviation
 // of 0.095 at most (0.044 by the F-distribution, were the means normal), so the bounds are 7 deviations away.
-// Correlations: 6 deviations. Seen to fail when: @@
+// Correlations: 6 deviations.
+// Seen to fail when: the index of a sample is hashed; `all` takes index * lights + light of one sequence for
+// all passes, or the same numbers for each; light and BSDF samples share a pair of dimensions, or vertices
+// do; what the choice of a light leaves of its number is hashed; several light samples, or several BSDF
+// samples, have hashed indices; each of several light samples has a sequence of its own.
 #include "image/image_file.h"
 #include "integrator/unlit.h"
 #include "light/light_tables.h"
@@ -13,7 +17,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <gtest/gtest.h>
 #include <iterator>
 #include <set>
