@@ -6,6 +6,7 @@
 #include "render/kernel.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
+#include "scenefile/scene_files.h"
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -122,6 +123,9 @@ nlohmann::ordered_json measure_shapes(const std::string& what, const std::filesy
   auto description = std::make_unique<const SceneDesc>(read_nori_xml(file));
   const double parse_seconds = seconds_since(start);
   const LoadedScene loaded = load_scene(*description);
+  const Clock::time_point hash_start = Clock::now();
+  scene_hash(*description);
+  const double hash_seconds = seconds_since(hash_start);
   const double render_seconds = first_pixels_seconds(loaded.scene), seconds = seconds_since(start);
   const double peak = memory("VmHWM") - before;
   description.reset();
@@ -132,6 +136,7 @@ nlohmann::ordered_json measure_shapes(const std::string& what, const std::filesy
           {"seconds_xml", parse_seconds},
           {"seconds_load", loaded.seconds_read},
           {"seconds_embree", loaded.seconds_build},
+          {"seconds_hash", hash_seconds},
           {"seconds_first_pixels", render_seconds},
           {"seconds", seconds},
           {"materials", loaded.scene.materials.count()},
@@ -226,8 +231,11 @@ int main(int argc, char** argv) {
     const auto get = [&](const char* key) { return scene_of_many[key].get<double>(); };
     fmt::print("{} {}, {:.0f} MB of XML: {:.2f} s to the first pixels\n", shapes,
                scene_of_many["scene"].get<std::string>(), get("megabytes"), get("seconds"));
-    fmt::print("  reading the XML {:.2f} s, shapes {:.2f} s, Embree's tree {:.2f} s, pixels {:.2f} s\n",
-               get("seconds_xml"), get("seconds_load"), get("seconds_embree"), get("seconds_first_pixels"));
+    fmt::print(
+        "  reading the XML {:.2f} s, shapes {:.2f} s, Embree's tree {:.2f} s, hash {:.2f} s, pixels {:.2f} "
+        "s\n",
+        get("seconds_xml"), get("seconds_load"), get("seconds_embree"), get("seconds_hash"),
+        get("seconds_first_pixels"));
     fmt::print("  bytes a shape: {:.0f}; as one mesh {:.0f}; at the peak, while reading, {:.0f}\n",
                get("bytes_a_shape"), get("bytes_a_shape_as_one_mesh"), get("peak_bytes_a_shape"));
   }

@@ -48,6 +48,15 @@ PixelStatistics pixel_of(const PixelRecord& record) {
   return pixel;
 }
 
+/// In the order of the file; of a FilmOrigin, const or not.
+auto texts_of(auto& origin) {
+  return std::array{&origin.sampler, &origin.integrator, &origin.isa, &origin.dialect, &origin.software};
+}
+
+bool is_whole(const PixelStatistics& pixel, const FilmBlock& block) {
+  return std::uint64_t(pixel.count) == block.last - block.first;
+}
+
 class Writer {
  public:
   explicit Writer(std::FILE* stream) : stream_(stream) {}
@@ -141,18 +150,36 @@ FilmBlock read_block(Reader& in, int width, int height) {
     for (int x = 0; x < width; ++x) {
       PixelRecord record;
       in.bytes(record.data(), record.size());
-      block.film.at(x, y) = pixel_of(record);
+      PixelStatistics& pixel = block.film.at(x, y);
+      pixel = pixel_of(record);
+      if (!is_whole(pixel, block))
+        in.fail_as_damaged(
+            fmt::format("pixel ({}, {}) has {} of replicates {} to {}", x, y, pixel.count, first, last));
     }
   return block;
+}
+
+void check_writable(const std::filesystem::path& file, const FilmState& state) {
+  const auto fail = [&](std::string_view problem) {
+    throw InputError(fmt::format("{}: cannot save this film: {}", file.string(), problem));
+  };
+  if (state.origin.samples_per_replicate <= 0)
+    fail(fmt::format("{} samples a replicate", state.origin.samples_per_replicate));
+  for (const std::string* text : texts_of(state.origin))
+    if (text->size() > longest_text) fail(fmt::format("a text of {} bytes is too long for it", text->size()));
+  if (state.film.blocks().empty()) fail("it has no replicates");
+  for (const FilmBlock& block : state.film.blocks())
+    for (int y = 0; y < state.film.height(); ++y)
+      for (int x = 0; x < state.film.width(); ++x)
+        if (!is_whole(block.film.at(x, y), block))
+          fail(fmt::format("it is a fragment: pixel ({}, {}) lacks replicates", x, y));
 }
 
 }  // namespace
 
 void write_film(const std::filesystem::path& file, const FilmState& state) {
+  check_writable(file, state);
   const FilmOrigin& origin = state.origin;
-  for (const std::string& text : {origin.sampler, origin.integrator, origin.software})
-    if (text.size() > longest_text)
-      throw InputError(fmt::format("{}: a text of {} bytes is too long for it", file.string(), text.size()));
   TemporaryFile temporary(file);
   Writer out(temporary.stream());
   out.bytes(magic.data(), magic.size());
@@ -163,7 +190,7 @@ void write_film(const std::filesystem::path& file, const FilmState& state) {
   out.number(origin.scene_hash);
   out.number(std::uint64_t(origin.samples_per_replicate));
   out.number(std::uint8_t(origin.replicates_by == ReplicatesBy::scrambling));
-  for (const std::string& text : {origin.sampler, origin.integrator, origin.software}) out.text(text);
+  for (const std::string* text : texts_of(origin)) out.text(*text);
   out.number(std::uint32_t(state.film.blocks().size()));
   for (const FilmBlock& block : state.film.blocks()) {
     out.number(block.first);
@@ -186,10 +213,12 @@ FilmState read_film(const std::filesystem::path& file) {
   origin.seed = in.number<std::uint64_t>();
   origin.scene_hash = in.number<std::uint64_t>();
   origin.samples_per_replicate = std::int64_t(in.number<std::uint64_t>());
+  if (origin.samples_per_replicate <= 0)
+    in.fail_as_damaged(fmt::format("{} samples a replicate", origin.samples_per_replicate));
   const auto scrambling = in.number<std::uint8_t>();
   if (scrambling > 1) in.fail_as_damaged(fmt::format("replicates of kind {}", scrambling));
   origin.replicates_by = scrambling ? ReplicatesBy::scrambling : ReplicatesBy::block;
-  for (std::string* text : {&origin.sampler, &origin.integrator, &origin.software}) *text = in.text();
+  for (std::string* text : texts_of(origin)) *text = in.text();
   const auto count = in.number<std::uint32_t>();
   constexpr std::uint32_t most_px = 1u << 30;
   if (width == 0 || height == 0 || width > most_px || height > most_px || count == 0 || count > most_blocks)

@@ -76,6 +76,7 @@ void FilmStack::begin_pass(std::uint64_t end) {
     ++kept_;
   for (FilmBlock& block : of_pass_) spare_.push_back(std::move(block.film));
   of_pass_.clear();
+  if (blocks_.empty()) spare_.clear();  // Old pixels would stay where the first pass adds none.
   for (std::size_t k = kept_; k < blocks.size(); ++k) {
     if (spare_.empty()) spare_.emplace_back(width_, height_);
     of_pass_.push_back({blocks[k].first, blocks[k].last, std::move(spare_.back())});

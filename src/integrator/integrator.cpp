@@ -108,6 +108,41 @@ int sample_count(const Parameters& parameters, std::string_view name) {
   return count;
 }
 
+std::string_view name_of(Heuristic heuristic) {
+  switch (heuristic) {
+    case Heuristic::average:
+      return "average";
+    case Heuristic::balance:
+      return "balance";
+    case Heuristic::power:
+      return "power";
+  }
+  return "";
+}
+
+std::string text_of(const LightSamples& lights) {
+  return fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
+}
+std::string text_of(const ByLights& by) { return text_of(by.lights); }
+std::string text_of(const ByBsdf& by) { return fmt::format(" bsdf_samples={}", by.bsdf_samples); }
+std::string text_of(const ByBoth& by) {
+  return fmt::format(" heuristic={}{} bsdf_samples={}", name_of(by.heuristic), text_of(by.lights),
+                     by.bsdf_samples);
+}
+std::string text_of(const PathRules& rules) {
+  return std::visit([](const auto& by) { return text_of(by); }, rules.direct_light());
+}
+std::string text_of(const ShowNormals&) { return ""; }
+std::string text_of(const ShowMaterial&) { return ""; }
+std::string text_of(const VisibilityRules& rules) {
+  return fmt::format(" cosine_weighted={} length={} background={}", rules.is_cosine_weighted, rules.length,
+                     rules.background);
+}
+std::string text_of(const SimpleLight& light) {
+  return fmt::format(" position={},{},{} energy={},{},{}", light.position.x, light.position.y,
+                     light.position.z, light.energy.r, light.energy.g, light.energy.b);
+}
+
 IntegratorSettings make_sampling_direct(const Object& description, std::vector<UnreadKey>& unread) {
   const Parameters parameters(description, sampling_direct_plugin, unread);
   const std::string method = parameters.text("samplingMethod");
@@ -146,16 +181,12 @@ std::string_view IntegratorSettings::light_sampler() const {
 
 std::string_view heuristic_name(const IntegratorSettings& integrator) {
   const PathRules* rules = integrator.path_rules();
-  if (!rules || !rules->heuristic()) return "";
-  switch (*rules->heuristic()) {
-    case Heuristic::average:
-      break;
-    case Heuristic::balance:
-      return "balance";
-    case Heuristic::power:
-      return "power";
-  }
-  return "";
+  return rules && rules->needs_both_pdfs() ? name_of(*rules->heuristic()) : "";
+}
+
+std::string describe(const IntegratorSettings& integrator) {
+  return std::string(integrator.name) +
+         std::visit([](const auto& rules) { return text_of(rules); }, integrator.rules);
 }
 
 IntegratorSettings make_integrator(const Object& description, Dialect dialect,

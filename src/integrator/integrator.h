@@ -35,6 +35,9 @@ const std::vector<Plugin>& integrator_plugins();
 /// "balance", "power"; empty where weights do not depend on densities.
 std::string_view heuristic_name(const IntegratorSettings& integrator);
 
+/// The name and all rules, on one line: "mis heuristic=power light_samples=3 sampler=power bsdf_samples=2".
+std::string describe(const IntegratorSettings& integrator);
+
 /// From the scene file, where some names mean another thing in each generation of the family: see
 /// docs/scene_format.md. Throws InputError with the known names.
 IntegratorSettings make_integrator(const Object& description, Dialect dialect,

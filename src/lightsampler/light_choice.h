@@ -8,7 +8,9 @@ namespace etendue {
 template <class F>
 struct LightChoice {
   Int<F> light;
-  UInt<F> u_left;  ///< The random number that chose, stretched back over 32 bits: still stratified.
+  /// The random number that chose, stretched back over 32 bits: still stratified, but with no more values
+  /// than led to this light.
+  UInt<F> u_left;
   F pmf;
 };
 

@@ -17,7 +17,9 @@ class PowerLights {
 
   std::int32_t passes() const { return 1; }
 
-  /// By inversion, which keeps the order of the random numbers and so their stratification.
+  /// By inversion, which keeps the order of the random numbers and so their stratification. u_left has
+  /// 2^32 values times the light's share, 2^24 at most (a float's), and 16 at the least share: the
+  /// samples of such a light reach few of its points.
   template <class F>
   LightChoice<F> choose(const Receiver<F>& /*receiver*/, const UInt<F>& u, std::int32_t /*pass*/) const {
     const Int<F> first(0);

@@ -1,6 +1,7 @@
 #include "scenefile/scene_files.h"
 
 #include "base/content_hash.h"
+#include "scenefile/dialect.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -8,8 +9,10 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <variant>
+#include <vector>
 
 namespace etendue {
 namespace {
@@ -26,17 +29,22 @@ void add_files(const Object& object, const std::filesystem::path& directory,
 /// The size comes behind the content, so that no two sequences of files read as the same bytes.
 void add_size(ContentHash& hash, std::uint64_t size) { hash.add(&size, sizeof size); }
 
-void add_content(ContentHash& hash, const std::filesystem::path& file) {
+void add_text(ContentHash& hash, std::string_view text) {
+  hash.add(text.data(), text.size());
+  add_size(hash, text.size());
+}
+
+/// Reads through `buffer`: to make one for each of many small files costs more than to read them.
+void add_content(ContentHash& hash, const std::filesystem::path& file, std::vector<char>& buffer) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rbe"), std::fclose);
   const auto fail = [&] {
     throw InputError(
         fmt::format("{}: cannot read: {}", file.string(), std::generic_category().message(errno)));
   };
   if (!stream) fail();
-  std::vector<char> bytes(std::size_t(1) << 20);
   std::uint64_t size = 0;
-  while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), stream.get())) {
-    hash.add(bytes.data(), count);
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), stream.get())) {
+    hash.add(buffer.data(), count);
     size += count;
   }
   if (std::ferror(stream.get())) fail();
@@ -54,10 +62,10 @@ std::vector<std::filesystem::path> files_named_by(const SceneDesc& description) 
 
 std::uint64_t scene_hash(const SceneDesc& description) {
   ContentHash hash;
-  const std::string& text = description.root.location.source->text;
-  hash.add(text.data(), text.size());
-  add_size(hash, text.size());
-  for (const std::filesystem::path& file : files_named_by(description)) add_content(hash, file);
+  add_text(hash, dialect_name(description.dialect));
+  add_text(hash, description.root.location.source->text);
+  std::vector<char> buffer(std::size_t(1) << 20);
+  for (const std::filesystem::path& file : files_named_by(description)) add_content(hash, file, buffer);
   return hash.digest();
 }
 

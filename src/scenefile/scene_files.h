@@ -12,8 +12,8 @@ namespace etendue {
 /// What the `filename` keys of a scene name, in the order of the scene file, each file once.
 std::vector<std::filesystem::path> files_named_by(const SceneDesc& description);
 
-/// Of the content of the scene file and of all files that it names, in its order: scenes of the same hash
-/// give the same image. Throws InputError where a file cannot be read.
+/// Of the dialect and the content of the scene file, and of all files that it names, in its order: scenes of
+/// the same hash give the same image. Throws InputError where a file cannot be read.
 std::uint64_t scene_hash(const SceneDesc& description);
 
 }  // namespace etendue

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstring>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <random>
@@ -21,7 +22,9 @@ FilmState some_film() {
                    .samples_per_replicate = 12345678901,
                    .replicates_by = ReplicatesBy::scrambling,
                    .sampler = "sobol",
-                   .integrator = "mis, heuristic power",
+                   .integrator = "mis heuristic=power light_samples=3 sampler=power bsdf_samples=2",
+                   .isa = "v3",
+                   .dialect = "nori-eth",
                    .software = "Etendue"},
                   FilmStack(3, 2, 3)};
   std::mt19937_64 engine(1);
@@ -72,7 +75,7 @@ TEST_F(FilmFile, KeepsEveryFieldToTheBit) {
 }
 
 TEST_F(FilmFile, IsAsLongAsTheFormatSays) {
-  const std::size_t header = 8 + 4 + 2 * 4 + 3 * 8 + 1 + (4 + 5) + (4 + 20) + (4 + 7) + 4;
+  const std::size_t header = 8 + 4 + 2 * 4 + 3 * 8 + 1 + (4 + 5) + (4 + 64) + (4 + 2) + (4 + 8) + (4 + 7) + 4;
   EXPECT_EQ(bytes_of(some_film()).size(), header + 4 * (16 + 6 * 80) + 8);
 }
 
@@ -107,6 +110,39 @@ TEST_F(FilmFile, SaysWhatIsWrong) {
   EXPECT_THAT(test::error_of([&] { read_film(folder_.path() / "none.film"); }), HasSubstr("No such file"));
   EXPECT_NE(test::error_of([&] { read_film(folder_.path()); }), "");
   EXPECT_NE(test::error_of([&] { write_film("/proc/a.film", some_film()); }), "");
+}
+
+TEST_F(FilmFile, RefusesReplicatesWithoutSamples) {
+  std::string bytes = bytes_of(some_film());
+  for (const std::int64_t samples : {0, -3}) {
+    std::memcpy(&bytes[36], &samples, sizeof samples);
+    EXPECT_THAT(error_of_reading(bytes), HasSubstr(fmt::format("{} samples a replicate", samples)));
+    FilmState state = some_film();
+    state.origin.samples_per_replicate = samples;
+    EXPECT_THAT(test::error_of([&] { write_film(path(), state); }),
+                HasSubstr(fmt::format("{} samples a replicate", samples)));
+  }
+}
+
+TEST_F(FilmFile, RefusesPixelsThatLackReplicates) {
+  std::string bytes = bytes_of(some_film());
+  const std::size_t last_pixel = bytes.size() - 8 - 80;
+  for (const std::int64_t count : {0, 1, 3, -2}) {
+    std::memcpy(&bytes[last_pixel], &count, sizeof count);
+    EXPECT_THAT(error_of_reading(bytes),
+                HasSubstr(fmt::format("damaged: pixel (2, 1) has {} of replicates 12 to 14", count)));
+  }
+}
+
+TEST_F(FilmFile, IsNotWrittenOfAFragment) {
+  FilmState state{some_film().origin, FilmStack(2, 1)};
+  const auto error = [&] { return test::error_of([&] { write_film(path(), state); }); };
+  EXPECT_THAT(error(), HasSubstr("a.film: cannot save this film: it has no replicates"));
+  state.film.begin_pass(1);
+  state.film.add(0, 0, std::vector<Color<double>>{{1, 1, 1}});
+  state.film.commit_pass();
+  EXPECT_THAT(error(), HasSubstr("fragment: pixel (1, 0) lacks replicates"));
+  EXPECT_FALSE(std::filesystem::exists(path()));
 }
 
 TEST_F(FilmFile, AHugeClaimAllocatesNothing) {

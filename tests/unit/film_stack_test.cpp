@@ -67,6 +67,15 @@ TEST(FilmStack, APassThatIsGivenUpChangesNothing) {
   EXPECT_EQ(stack.pixel(0, 0), combine_replicates(all, 0));
 }
 
+TEST(FilmStack, AFirstPassThatIsGivenUpLeavesNoPixels) {
+  FilmStack stack(2, 1);
+  stack.begin_pass(3);
+  stack.add(1, 0, random_means(3, 5));
+  stack.begin_pass(3);
+  stack.commit_pass();
+  EXPECT_EQ(stack.pixel(1, 0), PixelStatistics{});
+}
+
 TEST(FilmStack, GoesOnFromItsBlocks) {
   const Means all = random_means(13, 4);
   FilmStack stack(2, 1);

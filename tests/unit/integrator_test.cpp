@@ -48,6 +48,21 @@ std::string count_xml(const std::string& name, int value) {
   return fmt::format("<integer name=\"{}\" value=\"{}\"/>\n", name, value);
 }
 
+TEST(IntegratorText, SaysAllRules) {
+  EXPECT_EQ(describe({"mis", PathRules::direct(ByBoth{Heuristic::power, {3, "power"}, 2})}),
+            "mis heuristic=power light_samples=3 sampler=power bsdf_samples=2");
+  EXPECT_EQ(describe(integrator_from_name("average")),
+            "average heuristic=average light_samples=1 sampler=uniform bsdf_samples=1");
+  EXPECT_EQ(describe(integrator_from_name("every_light")), "every_light light_samples=1 sampler=all");
+  EXPECT_EQ(describe({"direct", PathRules::direct(ByBsdf{5})}), "direct bsdf_samples=5");
+  EXPECT_EQ(describe(integrator_from_name("normals")), "normals");
+  EXPECT_EQ(describe(integrator_from_name("material")), "material");
+  EXPECT_EQ(describe({"av", VisibilityRules{.length = 0.1f, .background = 1}}),
+            "av cosine_weighted=false length=0.1 background=1");
+  EXPECT_EQ(describe({"simple", SimpleLight{{1, -2.5f, 3}, {10, 20, 30}}}),
+            "simple position=1,-2.5,3 energy=10,20,30");
+}
+
 TEST(IntegratorNames, DirectMeansAnotherThingInEachDialect) {
   const IntegratorSettings nori_2012 = make("direct", Dialect::nori_2012).settings,
                            nori_eth = make("direct", Dialect::nori_eth).settings;

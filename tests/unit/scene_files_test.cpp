@@ -55,5 +55,15 @@ TEST_F(SceneFiles, HashIsOfTheContentOfAll) {
   EXPECT_EQ(hash(), before);
 }
 
+TEST_F(SceneFiles, HashIsOfTheDialect) {
+  const auto hash_as = [&](Dialect dialect) {
+    return scene_hash(read_nori_xml(folder_.path() / "scene.xml", dialect));
+  };
+  EXPECT_EQ(hash_as(Dialect::nori), hash());
+  EXPECT_NE(hash_as(Dialect::nori_eth), hash());
+  EXPECT_NE(hash_as(Dialect::nori_2012), hash());
+  EXPECT_NE(hash_as(Dialect::nori_2012), hash_as(Dialect::nori_eth));
+}
+
 }  // namespace
 }  // namespace etendue
