@@ -13,7 +13,7 @@ extern StopRequest stop_request;
 enum class LaterSignals { kill, hurry };
 
 /// From here on; before, they kill at once, as there is nothing to keep. A SIGHUP that is ignored (nohup)
-/// stays so.
+/// stays so. A pipe without a reader ends nothing any more.
 void catch_signals(LaterSignals later);
 
 }  // namespace etendue::app

@@ -1,8 +1,8 @@
 #include "base/error.h"
 #include "commands.h"
+#include "messages.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <fmt/format.h>
 #include <new>
@@ -49,18 +49,18 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     return exit_code;
   } catch (const CLI::ExtrasError&) {
-    fmt::print(stderr, "error: {}\n", unexpected_argument(app));
+    app::say("error: {}\n", unexpected_argument(app));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const std::string command =
         app.get_subcommands().empty() ? "" : " " + app.get_subcommands().front()->get_name();
-    fmt::print(stderr, "error: {}\nsee etendue{} --help\n", error.what(), command);
+    app::say("error: {}\nsee etendue{} --help\n", error.what(), command);
   } catch (const InputError& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
+    app::say("error: {}\n", error.what());
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "error: out of memory\n  make the scene or the image smaller\n");
+    app::say("error: out of memory\n  make the scene or the image smaller\n");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
+    app::say("error: {}\n", error.what());
   }
   return app::bad_input;
 }

@@ -1,7 +1,8 @@
 #include "progress.h"
 
+#include "messages.h"
+
 #include <algorithm>
-#include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <utility>
@@ -16,7 +17,7 @@ Progress::Progress(std::string what, bool is_quiet)
       last_(start_) {}
 
 Progress::~Progress() {
-  if (has_bar_) std::fputs("\n", stderr);
+  if (has_bar_) app::say("\n");
 }
 
 void Progress::update(double fraction) {
@@ -32,16 +33,16 @@ void Progress::update(double fraction) {
   if (is_terminal_) {
     constexpr int width = 40;
     const int full = std::clamp(int(fraction * width), 0, width);
-    fmt::print(stderr, "\r{} [{:#<{}}{: <{}}] {:3.0f} % {} \x1b[K", what_, "", full, "", width - full,
-               100 * fraction, is_last ? duration_text(elapsed_s) : left);
+    app::say("\r{} [{:#<{}}{: <{}}] {:3.0f} % {} \x1b[K", what_, "", full, "", width - full, 100 * fraction,
+             is_last ? duration_text(elapsed_s) : left);
     has_bar_ = true;
   } else {
-    fmt::print(stderr, "{}: {:.0f} %, {}\n", what_, 100 * fraction, left);
+    app::say("{}: {:.0f} %, {}\n", what_, 100 * fraction, left);
   }
 }
 
 void Progress::say(const std::string& line) {
-  if (!is_quiet_) fmt::print(stderr, "{}{}\n", has_bar_ ? "\r\x1b[K" : "", line);
+  if (!is_quiet_) app::say("{}{}\n", has_bar_ ? "\r\x1b[K" : "", line);
 }
 
 std::string duration_text(double seconds) {

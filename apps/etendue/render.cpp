@@ -2,15 +2,16 @@
 #include "commands.h"
 #include "image/image_file.h"
 #include "interrupt.h"
+#include "messages.h"
 #include "output_files.h"
 #include "progress.h"
+#include "render/check_settings.h"
 #include "render/thread_limit.h"
 #include "render_outputs.h"
 #include "replay.h"
 #include "scenefile/nori_xml.h"
 #include "scenefile/scene_files.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
@@ -23,10 +24,10 @@ void announce(const RenderOptions& options, const SceneDesc& description, const 
               const RenderSettings& settings) {
   if (options.is_quiet) return;
   const int threads = settings.threads > 0 ? settings.threads : available_threads();
-  fmt::print(stderr, "{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n",
-             options.scene_file, dialect_name(description.dialect), description.dialect_reason,
-             loaded.scene.camera.width_px, loaded.scene.camera.height_px, settings.samples_per_pixel,
-             settings.replicate_count(), settings.integrator.name, threads, isa_name(settings.isa));
+  say("{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n", options.scene_file,
+      dialect_name(description.dialect), description.dialect_reason, loaded.scene.camera.width_px,
+      loaded.scene.camera.height_px, settings.samples_per_pixel, settings.replicate_count(),
+      settings.integrator.name, threads, isa_name(settings.isa));
 }
 
 RenderResult render_with_progress(const Scene& scene, const RenderSettings& settings, bool is_quiet) {
@@ -37,7 +38,7 @@ RenderResult render_with_progress(const Scene& scene, const RenderSettings& sett
       [&](const RenderProgress& progress) {
         if (progress.seconds_to_finish && !has_said_why)
           bar.say(fmt::format(
-              "stopping once every pixel has some samples, in about {}; one more signal stops at once",
+              "stopping once every pixel has enough samples, in about {}; one more signal stops at once",
               duration_text(*progress.seconds_to_finish)));
         has_said_why = has_said_why || progress.seconds_to_finish;
         bar.update(progress.fraction);
@@ -47,7 +48,7 @@ RenderResult render_with_progress(const Scene& scene, const RenderSettings& sett
 
 int run(const RenderOptions& options) {
   for (const std::string& output : options.outputs) check_writable(output);
-  if (!options.stats_file.empty()) check_destination(options.stats_file);
+  for (const std::string& file : files_written(options)) check_destination(file);
   const SceneDesc description = read_nori_xml(options.scene_file, options.run.dialect());
   if (options.replay.empty())
     check_overwrites_nothing(files_written(options), files_of(description, options.scene_file));
@@ -62,11 +63,12 @@ int run(const RenderOptions& options) {
   if (const std::string unseen = unseen_lights(settings.integrator, loaded.scene.lights.dirac_count());
       !unseen.empty())
     loaded.warnings.push_back(unseen);
+  check_settings(settings);
   warn(options, loaded.warnings);
   if (!options.replay.empty()) {
     const SampleId sample = sample_id_from_text(options.replay);
     if (!options.outputs.empty() || !options.stats_file.empty())
-      fmt::print(stderr, "warning: --replay computes one sample; no file is written\n");
+      say("warning: --replay computes one sample; no file is written\n");
     fmt::print("{}", describe(loaded.scene, sample, replay(loaded.scene, settings, sample)));
     return done;
   }
@@ -77,12 +79,13 @@ int run(const RenderOptions& options) {
                             loaded,  settings,
                             hash,    render_with_progress(loaded.scene, settings, options.is_quiet)};
   const RenderResult& result = rendering.result;
+  const WrittenFiles written = write_outputs(rendering);
   report_invalid(rendering);
+  say_what_was_saved(rendering, written);
   if (!options.is_quiet)
-    fmt::print(stderr, "{} in {}: {:.1f} million samples a second\n",
-               result.is_interrupted ? "interrupted" : "done", duration_text(result.seconds),
-               1e-6 * double(result.counts.samples) / result.seconds);
-  if (!write_outputs(rendering)) return bad_input;
+    say("{} in {}: {:.1f} million samples a second\n", result.is_interrupted ? "interrupted" : "done",
+        duration_text(result.seconds), 1e-6 * double(result.counts.samples) / result.seconds);
+  if (!written.are_all) return bad_input;
   return result.is_interrupted ? interrupted : done;
 }
 

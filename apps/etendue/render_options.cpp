@@ -53,7 +53,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--replay", options.replay,
                      "X,Y,REPLICATE,SAMPLE: compute only this sample, and print each step of it");
   command.add_flag("--quiet", options.is_quiet,
-                   "No progress and no warnings about the scene; bad samples are still reported");
+                   "No progress and no warnings about the scene; bad samples, and images that went "
+                   "to another name, are still reported");
   command.add_flag("--strict", options.is_strict, "Warnings, such as an unknown key, are errors");
   command.add_flag("--sample-order", options.is_in_sample_order,
                    "Trace shadow rays in sample order, not aimed: slower, the same image");
@@ -62,18 +63,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 RenderSettings settings_for(const RenderOptions& options, const LoadedScene& loaded) {
   RenderSettings settings;
   settings.samples_per_pixel = options.samples_per_pixel.value_or(loaded.samples_per_pixel);
-  if (settings.samples_per_pixel < 1)
-    throw InputError(
-        fmt::format("--spp {}: at least 1 sample a pixel is needed", settings.samples_per_pixel));
   settings.replicates = options.replicates;
-  const int replicates = settings.replicate_count();
-  if (replicates < 1) throw InputError(fmt::format("--replicates {}: at least 1 is needed", replicates));
-  if (settings.samples_per_pixel % replicates != 0)
-    throw InputError(
-        fmt::format("--replicates {}: {} samples a pixel cannot be split into {} equal parts\n"
-                    "choose a number that divides {}, or take --spp {}",
-                    replicates, settings.samples_per_pixel, replicates, settings.samples_per_pixel,
-                    (settings.samples_per_pixel / replicates + 1) * std::int64_t(replicates)));
   if (!options.replicates_by.empty()) settings.replicates_by = replicates_by_from_name(options.replicates_by);
   settings.seed = options.run.seed;
   settings.threads = options.run.threads;

@@ -1,10 +1,11 @@
 #include "render_outputs.h"
 
 #include "image/image_file.h"
+#include "messages.h"
 #include "output_files.h"
 
+#include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -64,24 +65,38 @@ std::string destination_of(const std::string& output, const RenderResult& result
   return keeps_place ? output : partial_name(output);
 }
 
-void say_what_was_saved(const Rendering& rendering, const std::vector<std::string>& saved) {
+bool went_elsewhere(const WrittenFile& file) { return file.name != file.asked_for; }
+
+void say_what_is_kept(const WrittenFile& file) {
+  std::error_code error;
+  if (went_elsewhere(file) && std::filesystem::exists(file.asked_for, error))
+    say("{} is kept as it was\n", file.asked_for);
+  if (const std::string partial = partial_name(file.asked_for);
+      !went_elsewhere(file) && std::filesystem::exists(partial, error))
+    say("{} is of an earlier render that was interrupted, and may be removed\n", partial);
+}
+
+std::string samples_text(const Rendering& rendering) {
+  return fmt::format("{} of {} replicates, {} of {} samples a pixel", rendering.result.replicates,
+                     rendering.settings.replicate_count(), rendering.samples_per_pixel(),
+                     rendering.settings.samples_per_pixel);
+}
+
+void say_what_images_hold(const Rendering& rendering, const std::vector<WrittenFile>& images) {
   const RenderResult& result = rendering.result;
-  if (!result.is_interrupted || rendering.options.is_quiet || saved.empty()) return;
-  const std::string samples = fmt::format("{} of {} replicates, {} of {} samples a pixel", result.replicates,
-                                          rendering.settings.replicate_count(), rendering.samples_per_pixel(),
-                                          rendering.settings.samples_per_pixel);
-  if (result.is_fragment)
-    fmt::print(
-        stderr,
-        "saved {} of {} pixels ({}) to {}; the others have radiance 0 and a standard error that is not a "
-        "number\n",
-        rendering.pixels_rendered(), rendering.pixels(), samples, fmt::join(saved, ", "));
+  std::vector<std::string> names;
+  for (const WrittenFile& image : images) names.push_back(image.name);
+  if (rendering.pixels_rendered() == 0)
+    say("no pixel was rendered; no image is saved\n");
+  else if (names.empty())
+    return;
+  else if (result.is_fragment)
+    say("saved {} of {} pixels (of these {}) to {}; the others have radiance 0 and a standard error that is "
+        "not a number\n",
+        rendering.pixels_rendered(), rendering.pixels(), samples_text(rendering), fmt::join(names, ", "));
   else
-    fmt::print(stderr, "saved the whole image ({}) to {}\n", samples, fmt::join(saved, ", "));
-  for (const std::string& output : rendering.options.outputs)
-    if (std::error_code error;
-        destination_of(output, result) != output && std::filesystem::exists(output, error))
-      fmt::print(stderr, "{} is kept as it was\n", output);
+    say("saved the whole image ({}) to {}{}\n", samples_text(rendering), fmt::join(names, ", "),
+        result.replicates == 1 ? "; its error is unknown: it takes two replicates to tell" : "");
 }
 
 }  // namespace
@@ -94,34 +109,52 @@ std::string partial_name(const std::string& output) {
 
 std::vector<std::string> files_written(const RenderOptions& options) {
   std::vector<std::string> files = options.outputs;
-  for (const std::string& output : options.outputs) files.push_back(partial_name(output));
   if (!options.stats_file.empty()) files.push_back(options.stats_file);
+  for (std::size_t k = 0, asked_for = files.size(); k < asked_for; ++k)
+    files.push_back(partial_name(files[k]));
   return files;
 }
 
-bool write_outputs(const Rendering& rendering) {
-  Image image = to_image(rendering.result.film);
-  image.metadata = metadata(rendering);
-  bool is_all_written = true;
-  const auto is_written = [&](const auto& write) {
+WrittenFiles write_outputs(const Rendering& rendering) {
+  const RenderResult& result = rendering.result;
+  WrittenFiles written;
+  const auto write = [&](const WrittenFile& file, std::vector<WrittenFile>& list, const auto& write_to) {
     try {
-      write();
-      return true;
+      write_to(file.name);
+      list.push_back(file);
     } catch (const InputError& error) {
-      fmt::print(stderr, "error: {}\n", error.what());
-      return is_all_written = false;
+      say("error: {}\n", error.what());
+      written.are_all = false;
     }
   };
-  std::vector<std::string> saved;
-  for (const std::string& output : rendering.options.outputs) {
-    const std::string file = destination_of(output, rendering.result);
-    const bool is_png = image_format(file) == ImageFormat::png;
-    if (is_written([&] { is_png ? write_png(file, image) : write_exr(file, image); })) saved.push_back(file);
+  // All are settled before the first is written: an image must not stand in its own way.
+  std::vector<WrittenFile> images;
+  for (const std::string& output : rendering.options.outputs)
+    images.push_back({output, destination_of(output, result)});
+  const bool is_partial = std::any_of(images.begin(), images.end(), went_elsewhere);
+  if (rendering.pixels_rendered() > 0) {
+    Image image = to_image(result.film);
+    image.metadata = metadata(rendering);
+    for (const WrittenFile& file : images)
+      write(file, written.images, [&](const std::string& name) {
+        image_format(name) == ImageFormat::png ? write_png(name, image) : write_exr(name, image);
+      });
   }
-  say_what_was_saved(rendering, saved);
   if (const std::string& file = rendering.options.stats_file; !file.empty())
-    is_written([&] { write_text_file(file, stats(rendering).dump(2) + "\n"); });
-  return is_all_written;
+    write({file, is_partial ? partial_name(file) : file}, written.stats,
+          [&](const std::string& name) { write_text_file(name, stats(rendering).dump(2) + "\n"); });
+  return written;
+}
+
+void say_what_was_saved(const Rendering& rendering, const WrittenFiles& written) {
+  const bool is_as_asked_for = rendering.pixels_rendered() > 0 &&
+                               std::none_of(written.images.begin(), written.images.end(), went_elsewhere);
+  if (rendering.options.is_quiet && is_as_asked_for) return;
+  if (rendering.result.is_interrupted) say_what_images_hold(rendering, written.images);
+  for (const WrittenFile& file : written.stats)
+    if (went_elsewhere(file)) say("saved what --stats asks for to {}\n", file.name);
+  for (const std::vector<WrittenFile>* files : {&written.images, &written.stats})
+    for (const WrittenFile& file : *files) say_what_is_kept(file);
 }
 
 }  // namespace etendue::app

@@ -1,6 +1,7 @@
 #include "render_report.h"
 
-#include <cstdio>
+#include "messages.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/resource.h>
@@ -72,21 +73,18 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
   if (options.is_strict)
     throw InputError(fmt::format("{}\n--strict makes warnings errors", fmt::join(warnings, "\n")));
   if (options.is_quiet) return;
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : warnings) say("warning: {}\n", warning);
 }
 
 void report_invalid(const Rendering& rendering) {
   const RenderResult& result = rendering.result;
   if (result.invalid.count() == 0) return;
-  fmt::print(stderr,
-             "warning: {} of {} samples were not finite, or were negative; each counts as 0 in its pixel\n",
-             result.invalid.count(), result.counts.samples);
+  say("warning: {} of {} samples were not finite, or were negative; each counts as 0 in its pixel\n",
+      result.invalid.count(), result.counts.samples);
   for (const InvalidSample& sample : result.invalid.first())
-    fmt::print(stderr, "  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y,
-               sample.replicate, sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
-  fmt::print(
-      stderr,
-      "to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
+    say("  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y, sample.replicate,
+        sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
+  say("to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
       replay_command(rendering.options, result.invalid.first().front()));
 }
 

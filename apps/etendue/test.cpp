@@ -2,6 +2,7 @@
 #include "base/temporary_file.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "messages.h"
 #include "noritest/noritest.h"
 #include "output_files.h"
 #include "render/thread_limit.h"
@@ -43,7 +44,7 @@ void print_case(const std::string& file, int number, const CaseResult& result) {
   if (result.is_error) {
     fmt::print("{} {} {} {}: not run, ERROR\n", file, number, result.kind, subject);
     std::fflush(stdout);
-    fmt::print(stderr, "error: {}\n", result.problem);
+    say("error: {}\n", result.problem);
     return;
   }
   const std::string numbers =
@@ -90,7 +91,7 @@ void run_file(const Options& options, const TestSettings& settings, const std::s
   const auto warn = [&] {
     std::fflush(stdout);
     for (; warned < warnings.size(); ++warned)
-      if (!options.is_quiet) fmt::print(stderr, "warning: {}\n", warnings[warned]);
+      if (!options.is_quiet) say("warning: {}\n", warnings[warned]);
   };
   const TestFileResult result = run_test_file(
       test, settings,
@@ -161,11 +162,11 @@ int run(const Options& options) {
     } catch (const InputError& error) {  // The other files are tested all the same.
       ++counts.unreadable_files;
       std::fflush(stdout);
-      fmt::print(stderr, "error: {}\n", error.what());
+      say("error: {}\n", error.what());
     }
   }
-  print_summary(options, counts);
   if (!options.json_file.empty()) write_text_file(options.json_file, all.dump(2) + "\n");
+  print_summary(options, counts);
   if (counts.left_out > 0 || counts.files_left_out > 0) return interrupted;
   if (counts.unreadable_files > 0 || counts.errors > 0) return bad_input;
   return counts.failed > 0 ? check_failed : done;

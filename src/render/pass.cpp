@@ -7,6 +7,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <utility>
 
 namespace etendue {
 
@@ -18,58 +19,71 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// One thread's scratch, and what it has done in the pass.
+/// One thread's scratch, and what it has put into the film in the pass.
 struct Worker {
   std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
   std::vector<Color<double>> means;
-  InvalidSamples invalid;
-  std::int64_t samples = 0;
+  InvalidSamples invalid_of_tile, invalid;
+  RenderCounts counts;
 };
 
 /// Whether a pass goes on: asked by all threads, often.
 class StopWatch {
  public:
-  StopWatch(const StopRequest* request, bool is_first_pass, std::size_t tiles)
-      : request_(request), is_first_pass_(is_first_pass), tiles_(tiles) {}
+  /// \param is_needed is worth waiting for
+  /// \param expected_seconds that the pass takes, where it is known beforehand
+  /// \param requested_at when a stop was first seen, by this pass or one before; none at first
+  StopWatch(const StopRequest* request, bool is_needed, std::size_t tiles,
+            std::optional<double> expected_seconds, std::atomic<double>& requested_at)
+      : request_(request),
+        is_needed_(is_needed),
+        tiles_(tiles),
+        expected_seconds_(expected_seconds),
+        requested_at_(requested_at) {}
 
   bool must_stop() {
     if (!request_ || !request_->soon.load(std::memory_order_relaxed)) return false;
-    return !is_first_pass_ || request_->now.load(std::memory_order_relaxed) || takes_too_long();
+    return !is_needed_ || request_->now.load(std::memory_order_relaxed) || takes_too_long();
   }
 
   void count_tile() { ++tiles_done_; }
   std::size_t tiles_done() const { return tiles_done_; }
 
-  /// Of the pass; none before the first tile is done.
+  /// Of the pass; none where the first tile is not done and nothing was expected.
   std::optional<double> seconds_left() const {
     const std::size_t done = tiles_done_;
-    if (done == 0) return std::nullopt;
+    if (done == 0) {
+      if (!expected_seconds_) return std::nullopt;
+      return std::max(0.0, *expected_seconds_ - seconds_since(start_));
+    }
     return seconds_since(start_) * double(tiles_ - done) / double(done);
   }
-  bool is_waiting_for_pass() const { return request_ && request_->soon && is_first_pass_; }
+  bool is_waiting_for_pass() const { return request_ && request_->soon && is_needed_; }
 
  private:
   /// Where little is left the pass may come to its end, though the estimate was too low.
   bool takes_too_long() {
     constexpr double most_seconds = 10, most_seconds_once_begun = 20;
     const std::optional<double> left = seconds_left();
-    const double all = left.value_or(0) + seconds_since(start_) - seconds_at_request();
+    const double all = left.value_or(0) + seconds_since_request();
     if (left && all <= most_seconds) has_little_left_ = true;
     return all > (has_little_left_ ? most_seconds_once_begun : most_seconds);
   }
 
-  double seconds_at_request() {
-    double none = -1;
-    request_seconds_.compare_exchange_strong(none, seconds_since(start_));
-    return request_seconds_;
+  double seconds_since_request() {
+    const double now = seconds_since({});
+    double none = 0;
+    requested_at_.compare_exchange_strong(none, now);
+    return now - requested_at_;
   }
 
   const StopRequest* request_;
-  const bool is_first_pass_;
+  const bool is_needed_;
   const std::size_t tiles_;
+  const std::optional<double> expected_seconds_;
   const Clock::time_point start_ = Clock::now();
   std::atomic<std::size_t> tiles_done_{0};
-  std::atomic<double> request_seconds_{-1};
+  std::atomic<double>& requested_at_;
   std::atomic<bool> has_little_left_{false};
 };
 
@@ -85,6 +99,8 @@ struct Passes::Threads {
   const int count;
   tbb::task_arena arena;
   tbb::enumerable_thread_specific<Worker> workers{};
+  std::optional<double> seconds_per_replicate{};  ///< As the last pass took.
+  std::atomic<double> stop_requested_at{0};       ///< Of Clock; 0: not seen yet.
 
   /// False where it was stopped: nothing of the tile is in the film then.
   bool render_tile(const WorkUnit& tile, const std::function<bool()>& must_stop,
@@ -97,8 +113,10 @@ struct Passes::Threads {
                 .unit = tile,
                 .block = worker.block.get(),
                 .means = &worker.means,
-                .invalid = &worker.invalid,
+                .invalid = &worker.invalid_of_tile,
                 .must_stop = &must_stop};
+    worker.block->counts = {};
+    worker.invalid_of_tile = {};
     kernel.render_tile(job);
     if (job.is_stopped) return false;
     const Color<double>* means = worker.means.data();
@@ -106,18 +124,19 @@ struct Passes::Threads {
       for (int y = tile.pixels.y_begin; y < tile.pixels.y_end; ++y)
         for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, means += tile.replicates)
           film.add(x, y, {means, std::size_t(tile.replicates)});
-    worker.samples += tile.samples_per_pixel() * tile.pixels.width() * tile.pixels.height();
+    worker.counts.samples += tile.samples_per_pixel() * tile.pixels.width() * tile.pixels.height();
+    worker.counts += worker.block->counts;
+    worker.invalid.add(worker.invalid_of_tile);
     return true;
   }
 
   /// Of all workers, which begin anew.
   void take_counts(PassResult& result) {
     for (Worker& worker : workers) {
-      result.counts.samples += worker.samples;
-      result.counts += worker.block->counts;
+      result.counts.samples += worker.counts.samples;
+      result.counts += worker.counts;
       result.invalid.add(worker.invalid);
-      worker.samples = 0;
-      worker.block->counts = {};
+      worker.counts = {};
       worker.invalid = {};
     }
   }
@@ -151,7 +170,7 @@ double Passes::measure_pace() {
                          .samples_per_replicate = std::min(threads.settings.samples_per_replicate(), 16)},
                 .block = worker.block.get(),
                 .means = &worker.means,
-                .invalid = &worker.invalid};
+                .invalid = &worker.invalid_of_tile};
     threads.kernel.render_tile(job);
     measured += double(job.unit.pixels.width()) * job.unit.pixels.height() * job.unit.samples_per_replicate;
   }
@@ -168,7 +187,11 @@ PassResult Passes::render(std::vector<FilmStack>& films, int end) {
       threads.count);
   const bool is_first_pass = film.last() == film.first();
   const Clock::time_point start = Clock::now();
-  StopWatch watch(threads.stop, is_first_pass, tiles.size());
+  const bool is_needed = film.last() - film.first() < 2;  // One replicate alone has no error bar.
+  const std::optional<double> expected_seconds =
+      threads.seconds_per_replicate ? std::optional(*threads.seconds_per_replicate * (end - first))
+                                    : std::nullopt;
+  StopWatch watch(threads.stop, is_needed, tiles.size(), expected_seconds, threads.stop_requested_at);
   const std::function<bool()> must_stop = [&] { return watch.must_stop(); };
   std::mutex progress_mutex;
   for (FilmStack& each : films) each.begin_pass(std::uint64_t(end));
@@ -192,7 +215,19 @@ PassResult Passes::render(std::vector<FilmStack>& films, int end) {
   else
     result = {};
   result.seconds = seconds_since(start);
+  threads.seconds_per_replicate = result.seconds / (end - first);
   return result;
+}
+
+Film Passes::take_film(FilmStack&& stack) {
+  if (std::optional<Film> film = std::move(stack).take_single()) return std::move(*film);
+  Film film(stack.width(), stack.height());
+  threads_->arena.execute([&] {
+    tbb::parallel_for(0, stack.height(), [&](int y) {
+      for (int x = 0; x < stack.width(); ++x) film.at(x, y) = stack.pixel(x, y);
+    });
+  });
+  return film;
 }
 
 int end_of_next_pass(int done, int replicates, double seconds_per_replicate, double pixels) {

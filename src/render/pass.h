@@ -33,8 +33,12 @@ class Passes {
 
   /// Renders [films.front().last(), end) of all films, that of the image and of each layer, and commits it.
   /// Where a stop ends the first pass of a film early, the tiles that are whole are committed; of later
-  /// passes nothing is.
+  /// passes nothing is. A stop soon lets a pass that starts with fewer than two replicates come to its end,
+  /// if that is no more than about 10 s after it.
   PassResult render(std::vector<FilmStack>& films, int end);
+
+  /// All that is committed of a stack.
+  Film take_film(FilmStack&& stack);
 
  private:
   struct Threads;

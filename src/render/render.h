@@ -54,15 +54,15 @@ struct RenderResult {
 
 /// What a render is asked from outside while it runs.
 struct StopRequest {
-  /// End with a whole image: of the replicates that all pixels have, or of the first pass, if that takes no
-  /// more than about 10 s; else with a fragment.
+  /// End with a whole image of the replicates that all pixels have. Two of them, for an error bar, or else
+  /// one are waited for, if that takes no more than about 10 s; without one it is a fragment.
   std::atomic<bool> soon{false};
   std::atomic<bool> now{false};  ///< End, with a fragment if need be.
 };
 
 struct RenderProgress {
   double fraction = 0;                      ///< Done, in [0, 1].
-  std::optional<double> seconds_to_finish;  ///< Where a stop waits for the first pass: about how long.
+  std::optional<double> seconds_to_finish;  ///< Where a stop waits for a pass: about how long.
 };
 
 /// Called from one thread at a time, after each tile.

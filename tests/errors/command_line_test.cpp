@@ -202,7 +202,8 @@ TEST_F(CommandLine, AnInterruptLeavesTheWholeImageOfFewerReplicates) {
     const ProgramResult result = program.wait();
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_THAT(result.err, AllOf(HasSubstr("interrupted"), HasSubstr("saved the whole image ("),
-                                  HasSubstr(" of 4096000 replicates"), HasSubstr("to a.exr")));
+                                  HasSubstr(" of 4096000 replicates"), HasSubstr("to a.exr"),
+                                  Not(HasSubstr("kept as it was")), Not(HasSubstr("partial"))));
     const Image image = read_exr(path("a.exr"));
     EXPECT_EQ(count_not_rendered(image), 0);
     EXPECT_EQ(metadata(image, "pixelsNotRendered"), "(none)");
@@ -240,6 +241,7 @@ TEST_F(CommandLine, AnInterruptedImageDoesNotReplaceAFinishedOne) {
 
 TEST_F(CommandLine, AFragmentGoesToAPartialNameOfItsOwn) {
   write_file(path("scene.xml"), scene_xml(512, 512));
+  write_file(path("s.json"), "of a finished render");
   // A replicate of every pixel takes minutes.
   Program program({"render", "scene.xml", "-o", "a.exr", "-o", "a.png", "--stats", "s.json", "--spp", "40000",
                    "--replicates", "2", "--threads", "1", "--isa", "scalar"},
@@ -248,17 +250,21 @@ TEST_F(CommandLine, AFragmentGoesToAPartialNameOfItsOwn) {
   program.send(SIGHUP);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.err, HasSubstr("to a.partial.exr, a.partial.png"));
-  EXPECT_THAT(files(),
-              testing::UnorderedElementsAre("scene.xml", "a.partial.exr", "a.partial.png", "s.json"));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("pixels (of these 1 of 2 replicates"),
+                                HasSubstr("to a.partial.exr, a.partial.png"), HasSubstr("to s.partial.json"),
+                                HasSubstr("s.json is kept as it was"), Not(HasSubstr("a.exr is kept"))));
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("scene.xml", "a.partial.exr", "a.partial.png", "s.json",
+                                                     "s.partial.json"));
+  EXPECT_EQ(read_file(path("s.json")), "of a finished render");
   const Image image = read_exr(path("a.partial.exr"));
-  const std::int64_t unknown = json("s.json").at("pixels_not_rendered");
+  const std::int64_t unknown = json("s.partial.json").at("pixels_not_rendered");
   EXPECT_GT(unknown, 0);
   EXPECT_LT(unknown, 512 * 512);
   EXPECT_GE(count_not_rendered(image), unknown);
   EXPECT_EQ(metadata(image, "pixelsNotRendered"), std::to_string(unknown));
   EXPECT_EQ(metadata(image, "replicates"), "0-0");
-  EXPECT_EQ(json("s.json").at("samples"), (512 * 512 - unknown) * 20000);
+  EXPECT_EQ(json("s.partial.json").at("samples"), (512 * 512 - unknown) * 20000);
+  EXPECT_EQ(json("s.partial.json").at("camera_rays"), json("s.partial.json").at("samples"));
 }
 
 TEST_F(CommandLine, ASecondSignalEndsTheFirstPass) {
@@ -305,6 +311,123 @@ TEST_F(CommandLine, SignalsAtAnyTimeLeaveAWholeImageAndTheFinishedOne) {
     std::filesystem::remove(path("out/a.partial.exr"));
     EXPECT_TRUE(std::filesystem::is_empty(path("out"))) << k;
   }
+}
+
+TEST_F(CommandLine, TheImageIsSavedThoughNobodyReadsWhatIsSaid) {
+  int ends[2];
+  ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
+  Program program(long_render, folder_.path(), ends[1]);
+  close(ends[1]);
+  std::string said;
+  for (char c; said.find("render: ") == std::string::npos && read(ends[0], &c, 1) == 1;) said += c;
+  close(ends[0]);
+  // More is said meanwhile.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait().exit_code, 3);
+  EXPECT_EQ(count_not_rendered(read_exr(path("a.exr"))), 0);
+  EXPECT_EQ(json("s.json").at("interrupted"), true);
+}
+
+/// The first pass takes minutes.
+const std::vector<std::string> long_first_pass{"render",    "scene.xml", "-o",           "a.exr",
+                                               "--spp",     "4000000",   "--replicates", "2",
+                                               "--threads", "1",         "--isa",        "scalar"};
+
+TEST_F(CommandLine, ASignalSoonAfterOneThatWasPassedOverIsObeyed) {
+  write_file(path("scene.xml"), scene_xml(256, 256));
+  // A pass of some seconds, that the first signal waits for.
+  std::vector<std::string> command = long_first_pass;
+  command[5] = "300";
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    Program program(command, folder_.path());
+    program.wait_until([&] { return program.err_so_far().find("samples a pixel in") != std::string::npos; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    const double first = program.seconds();
+    program.send(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(130));
+    program.send(SIGINT);
+    const bool is_passed_over = program.seconds() - first < 0.17;
+    std::this_thread::sleep_for(std::chrono::milliseconds(130));
+    if (!is_passed_over) continue;  // The machine is busy.
+    program.send(SIGINT);
+    const ProgramResult result = program.wait();
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.err, HasSubstr("a.partial.exr"));
+    return;
+  }
+}
+
+TEST_F(CommandLine, AFragmentWithoutPixelsIsNotSaved) {
+  write_file(path("scene.xml"), scene_xml(1, 1));
+  std::vector<std::string> command = long_first_pass;
+  command[5] = "2000000000";
+  command.push_back("--quiet");
+  Program program(command, folder_.path());
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  program.send(SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(result.err, "no pixel was rendered; no image is saved\n");
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("scene.xml"));
+}
+
+TEST_F(CommandLine, QuietTellsWhereADivertedImageWent) {
+  write_file(path("a.exr"), "finished");
+  std::vector<std::string> command = long_render;
+  command.push_back("--quiet");
+  Program program(command, folder_.path());
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("to a.partial.exr"), HasSubstr("to s.partial.json"),
+                                HasSubstr("a.exr is kept as it was")));
+}
+
+TEST_F(CommandLine, APartialImageBesideAFinishedOneIsPointedOutAndKept) {
+  write_file(path("a.partial.exr"), "earlier");
+  const ProgramResult result = run({"render", "scene.xml", "-o", "a.exr", "--spp", "4"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("a.partial.exr is of an earlier render that was interrupted"));
+  EXPECT_EQ(read_file(path("a.partial.exr")), "earlier");
+}
+
+TEST_F(CommandLine, AWholeImageOfOneReplicateSaysThatItsErrorIsUnknown) {
+  // A pass takes some seconds; the second one is given up at once.
+  Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "12000", "--replicates", "2", "--threads",
+                   "1", "--isa", "scalar"},
+                  folder_.path());
+  program.wait_until([&] {
+    const std::string said = program.err_so_far();
+    const std::size_t at = said.rfind("render: ");
+    return at != std::string::npos && std::stoi(said.substr(at + 8)) > 50;
+  });
+  program.send(SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("saved the whole image (1 of 2 replicates"),
+                                HasSubstr("its error is unknown: it takes two replicates to tell")));
+}
+
+TEST_F(CommandLine, APartialNameThatCannotBeWrittenIsFoundBeforehand) {
+  std::filesystem::create_directory(path("a.partial.exr"));
+  std::filesystem::create_directory(path("s.partial.json"));
+  EXPECT_THAT(run({"render", "scene.xml", "-o", "a.exr", "--spp", "1"}).err,
+              HasSubstr("a.partial.exr: is a folder"));
+  EXPECT_THAT(run({"render", "scene.xml", "-o", "b.exr", "--stats", "s.json", "--spp", "1"}).err,
+              HasSubstr("s.partial.json: is a folder"));
+}
+
+TEST_F(CommandLine, AdviceIsPossible) {
+  const ProgramResult result =
+      run({"render", "scene.xml", "-o", "a.exr", "--spp", "2147483647", "--replicates", "2147483646"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("cannot be split into"), Not(HasSubstr("or take"))));
 }
 
 TEST_F(CommandLine, AnOutputThatFailsDoesNotTakeTheOthersWithIt) {

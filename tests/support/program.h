@@ -28,7 +28,9 @@ struct ProgramResult {
 /// A run of etendue in the folder `where`, without a terminal.
 class Program {
  public:
-  Program(const std::vector<std::string>& arguments, const std::filesystem::path& where)
+  /// \param err_descriptor where stderr goes, if it is not to be kept
+  Program(const std::vector<std::string>& arguments, const std::filesystem::path& where,
+          int err_descriptor = -1)
       : start_(std::chrono::steady_clock::now()) {
     const std::string out = (streams_.path() / "out").string(), err = (streams_.path() / "err").string();
     const std::string folder = where.string();
@@ -42,7 +44,7 @@ class Program {
     if (process_ == 0) {
       dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
       dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
-      dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+      dup2(err_descriptor >= 0 ? err_descriptor : open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
       if (chdir(folder.c_str()) == 0) execv(argv[0], argv.data());
       _exit(127);
     }

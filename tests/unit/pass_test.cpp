@@ -102,7 +102,7 @@ TEST(Passes, AStopAtOnceLeavesAFragmentOfTheFirstPassAndNothingOfLaterOnes) {
 
   StopRequest later;
   const ProgressCallback stop_in_second_pass = [&](const RenderProgress& progress) {
-    if (progress.fraction > 0.6) later.soon = true;
+    if (progress.fraction > 0.6) later.soon = later.now = true;
   };
   Passes more_passes(loaded.scene, settings, stop_in_second_pass, &later);
   std::vector<FilmStack> whole{FilmStack(37, 37)};
@@ -114,6 +114,28 @@ TEST(Passes, AStopAtOnceLeavesAFragmentOfTheFirstPassAndNothingOfLaterOnes) {
   EXPECT_EQ(whole.front().last(), 1u);
   for (int y = 0; y < 37; ++y)
     for (int x = 0; x < 37; ++x) ASSERT_EQ(whole.front().pixel(x, y).count, 1);
+}
+
+TEST(Passes, CountsOfAFragmentAreOfWhatIsInIt) {
+  const LoadedScene loaded = scene_with_invalid_samples("sobol");
+  RenderSettings settings = settings_of(6400, 1, ReplicatesBy::block);
+  settings.threads = 4;  // So that some are in the midst of a tile when another asks for the stop.
+  std::int64_t invalid = 0;
+  for (const char* integrator : {"light", "mis"}) {
+    settings.integrator = integrator_from_name(integrator);
+    StopRequest stop;
+    const ProgressCallback stop_after_some = [&](const RenderProgress& progress) {
+      if (progress.fraction > 0.1) stop.soon = stop.now = true;
+    };
+    const RenderResult fragment = render(loaded.scene, settings, stop_after_some, &stop);
+    ASSERT_TRUE(fragment.is_fragment);
+    EXPECT_GT(fragment.counts.samples, 0);
+    EXPECT_EQ(fragment.counts.camera_rays, fragment.counts.samples);
+    invalid += fragment.invalid.count();
+    for (const InvalidSample& sample : fragment.invalid.first())
+      EXPECT_EQ(fragment.film.at(sample.x, sample.y).count, 1) << sample.x << ' ' << sample.y;
+  }
+  EXPECT_GT(invalid, 0);
 }
 
 TEST(Render, SaysWhetherItIsWhole) {
@@ -147,6 +169,22 @@ TEST(Passes, AStopSoonLetsAShortFirstPassComeToItsEnd) {
   EXPECT_FALSE(passes.render(stack, 3).is_complete);
   for (int y = 0; y < 37; ++y)
     for (int x = 0; x < 37; ++x) ASSERT_EQ(stack.front().pixel(x, y).count, 2);
+}
+
+TEST(Passes, AStopSoonWaitsForTheSecondReplicateToo) {
+  const LoadedScene loaded = scene_with_invalid_samples("sobol");
+  StopRequest stop;
+  stop.soon = true;
+  const RenderSettings settings = settings_of(640, 10, ReplicatesBy::block);
+  const ProgressCallback no_progress;
+  Passes passes(loaded.scene, settings, no_progress, &stop);
+  std::vector<FilmStack> stack{FilmStack(37, 37)};
+  EXPECT_TRUE(passes.render(stack, 1).is_complete);
+  EXPECT_TRUE(passes.render(stack, 2).is_complete);
+  EXPECT_FALSE(passes.render(stack, 3).is_complete);
+  stop.now = true;
+  std::vector<FilmStack> hurried{FilmStack(37, 37)};
+  EXPECT_FALSE(passes.render(hurried, 1).is_complete);
 }
 
 TEST(Passes, TakeAboutASecondAndEndAtRoundNumbers) {
