@@ -7,13 +7,14 @@
 
 namespace etendue {
 
+namespace {
+
+/// Half the size of a disk's bounding box along each axis (m).
 std::array<double, 3> half_extent(const Disk& disk) {
   const auto along = [](float x, float y) { return std::hypot(double(x), double(y)); };
   return {along(disk.along_x.x, disk.along_y.x), along(disk.along_x.y, disk.along_y.y),
           along(disk.along_x.z, disk.along_y.z)};
 }
-
-namespace {
 
 /// The box about `center`, rounded outwards, so that it never cuts the shape.
 Box box_about(const Vec3f& center, const std::array<double, 3>& half) {

@@ -17,18 +17,6 @@ struct LightPoint {
 
 inline constexpr int light_pieces = 16;
 
-template <class F>
-LightPoint<F> no_light_point() {
-  const Vec3<F> zero{F(0), F(0), F(0)};
-  return {zero, zero, F(0), Int<F>(0)};
-}
-
-template <class F>
-LightPoint<F> select(const Mask<F>& m, const LightPoint<F>& a, const LightPoint<F>& b) {
-  return {select(m, a.position, b.position), select(m, a.ng, b.ng), select(m, a.pdf_area, b.pdf_area),
-          select(m, a.piece, b.piece)};
-}
-
 /// Whether the front of a light at `position`, with geometric normal `ng`, faces the place `reference`.
 /// Not one that lies in the light's own plane within rounding: its cosine would be an error over a small
 /// number.

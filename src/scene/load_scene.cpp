@@ -4,7 +4,6 @@
 #include "scene/load_light.h"
 #include "scene/load_shape.h"
 
-#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 #include <optional>
