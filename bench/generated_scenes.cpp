@@ -76,6 +76,7 @@ Scene seen_from_the_front(Geometry geometry, Lights lights, int width_px, int he
   camera.width_px = width_px;
   camera.height_px = height_px;
   camera.origin = {0, 3, 8};
+  camera.start = {0, 3, 8};
   const Vec3f forward = normalize(Vec3f{0, -0.35f, -1}), right{1, 0, 0}, up = cross(right, forward);
   camera.per_px_x = right * (1.2f / float(width_px));
   camera.per_px_y = up * (-0.8f / float(height_px));

@@ -190,6 +190,7 @@ int main(int argc, char** argv) {
   Camera camera;
   camera.width_px = camera.height_px = 32;
   camera.origin = {0, 5, 0};
+  camera.start = {0, 5, 0};
   camera.at_film_origin = {-1, -1, -1};
   camera.per_px_x = {1.0f / 16, 0, 0};
   camera.per_px_y = {0, 0, 1.0f / 16};

@@ -53,7 +53,7 @@ int run(const RenderOptions& options) {
   if (options.replay.empty())
     check_overwrites_nothing(files_written(options), files_of(description, options.scene_file));
   const ThreadLimit thread_limit(options.run.threads);
-  LoadedScene loaded = load_scene(description);
+  LoadedScene loaded = load_scene(description, options.is_watertight ? Edges::watertight : Edges::fast);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
   settings.integrator = integrator_for(options, loaded, description.dialect, loaded.warnings);

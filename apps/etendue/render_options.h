@@ -18,7 +18,7 @@ struct RenderOptions {
   std::string integrator, sampler, light_sampler, replicates_by, stats_file, replay;
   std::optional<int> samples_per_pixel, replicates;
   RunOptions run;
-  bool is_quiet = false, is_strict = false, is_in_sample_order = false;
+  bool is_quiet = false, is_strict = false, is_in_sample_order = false, is_watertight = false;
 };
 
 /// `options` must live as long as the command.

@@ -11,6 +11,12 @@ namespace etendue::app {
 namespace {
 
 std::string text(const Vec3f& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+/// A place of the scene, as the file's world has it.
+std::string place_text(const Scene& scene, const Vec3f& p) {
+  const Vec3<double>& origin = scene.origin;
+  if (length_sq(origin) == 0) return text(p);
+  return fmt::format("{:.12g} {:.12g} {:.12g}", origin.x + p.x, origin.y + p.y, origin.z + p.z);
+}
 std::string text(const Colorf& c) { return fmt::format("{} {} {}", c.r, c.g, c.b); }
 
 std::string light_text(const Scene& scene, std::int32_t light) {
@@ -31,7 +37,7 @@ std::string light_sample_text(const Scene& scene, const SampleTrace::LightSample
       "    radiance / pdf  {}\n"
       "    unshadowed      {} (with BSDF, cosine, weight and throughput)\n"
       "    shadow ray      {}\n",
-      light_text(scene, sample.light), text(sample.end), sample.pdf_solid_angle,
+      light_text(scene, sample.light), place_text(scene, sample.end), sample.pdf_solid_angle,
       text(sample.radiance_over_pdf), text(sample.unshadowed), shadow_ray);
 }
 
@@ -55,7 +61,7 @@ std::string vertex_text(const Scene& scene, const SampleTrace::Vertex& vertex) {
       all += "  hit               nothing\n";
       break;
     case SampleTrace::Vertex::Kind::medium:
-      all += fmt::format("  in the medium     {} m\n", text(vertex.position));
+      all += fmt::format("  in the medium     {} m\n", place_text(scene, vertex.position));
       break;
     case SampleTrace::Vertex::Kind::surface:
       all += fmt::format(
@@ -64,8 +70,8 @@ std::string vertex_text(const Scene& scene, const SampleTrace::Vertex& vertex) {
           "  ng                {}\n"
           "  ns                {}\n",
           vertex.surface->geometry + 1, vertex.surface->primitive, vertex.surface->material,
-          light_text(scene, vertex.surface->light), text(vertex.position), text(vertex.surface->ng),
-          text(vertex.surface->ns));
+          light_text(scene, vertex.surface->light), place_text(scene, vertex.position),
+          text(vertex.surface->ng), text(vertex.surface->ns));
   }
   if (vertex.light_sample) all += light_sample_text(scene, *vertex.light_sample);
   if (vertex.bsdf_sample) all += bsdf_sample_text(*vertex.bsdf_sample);
@@ -100,8 +106,8 @@ std::string describe(const Scene& scene, const SampleId& sample, const SampleTra
       "camera ray\n"
       "  origin            {} m\n"
       "  direction         {}\n",
-      sample.x, sample.y, sample.replicate, sample.index, trace.x_px, trace.y_px, text(trace.ray_origin),
-      text(trace.ray_direction));
+      sample.x, sample.y, sample.replicate, sample.index, trace.x_px, trace.y_px,
+      place_text(scene, trace.ray_origin), text(trace.ray_direction));
   for (const SampleTrace::Vertex& vertex : trace.vertices) all += vertex_text(scene, vertex);
   return all + fmt::format("radiance            {}\n", text(trace.radiance));
 }

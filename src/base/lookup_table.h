@@ -16,6 +16,7 @@ class LookupTable {
     values_.resize(std::size_t(size_) + 1 + widest_lanes);
     values_[std::size_t(size_++)] = value;
   }
+  void set(std::int32_t i, const T& value) { values_[std::size_t(i)] = value; }
   std::int32_t size() const { return size_; }
   const T& operator[](std::int32_t i) const { return values_[std::size_t(i)]; }
 

@@ -2,6 +2,7 @@
 
 #include "base/reach.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -68,6 +69,22 @@ Lens lens_of(const Parameters& parameters, std::vector<UnreadKey>& unread) {
 
 }  // namespace
 
+void Camera::approach(const Sphere& scene) {
+  // Depth grows by 1 along each direction of the film, and not along the film itself.
+  const Vec3<double> across = cross(per_px_x, per_px_y),
+                     depth_of = across * (1 / dot(across, at_film_origin));
+  const Vec3<double> middle{scene.center.x, scene.center.y, scene.center.z};
+  const double radius = scene.radius * length(depth_of);
+  const double depth = dot(middle - origin, depth_of) - 1.5 * radius;
+  if (!(depth > 1.5 * radius)) return;
+  start = narrow(origin + at_film_origin * depth);
+  start_per_px_x = narrow(per_px_x * depth);
+  start_per_px_y = narrow(per_px_y * depth);
+  near_clip = float(std::max(near_clip - depth, 0.0));
+  far_clip = float(std::max(far_clip - depth, 0.0));
+  start_depth = float(depth);
+}
+
 const std::vector<Plugin>& camera_plugins() {
   static const std::vector<Plugin> plugins{perspective_plugin};
   return plugins;
@@ -101,12 +118,9 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   const double image_right = dialect == Dialect::nori ? -1 : 1;
   const double half_width = std::tan(0.5 * fov_deg * std::numbers::pi / 180);
   const double px = 2 * half_width / camera.width_px;
-  const auto to_world = [&](const Vec3<double>& v) {
-    const Vec3<double> w = transform_vector(world_from_camera, v);
-    return Vec3f{float(w.x), float(w.y), float(w.z)};
-  };
-  const Vec3<double> origin = transform_point(world_from_camera, {0, 0, 0});
-  camera.origin = {float(origin.x), float(origin.y), float(origin.z)};
+  const auto to_world = [&](const Vec3<double>& v) { return transform_vector(world_from_camera, v); };
+  camera.origin = transform_point(world_from_camera, {0, 0, 0});
+  camera.start = Camera::narrow(camera.origin);
   if (!is_within_reach(camera.origin))
     throw InputError(parameters.location("toWorld"), "the camera is too far from the origin to compute with",
                      "scale the scene to common sizes");
@@ -114,8 +128,8 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   camera.per_px_x = to_world({image_right * px, 0, 0});
   camera.per_px_y = to_world({0, -px, 0});
   if (lens.radius > 0) {
-    camera.lens_x = to_world({lens.radius, 0, 0});
-    camera.lens_y = to_world({0, lens.radius, 0});
+    camera.lens_x = Camera::narrow(to_world({lens.radius, 0, 0}));
+    camera.lens_y = Camera::narrow(to_world({0, lens.radius, 0}));
     camera.inv_focus_distance = float(1 / lens.focus_distance);
     camera.has_lens = true;
     if (!std::isfinite(length_sq(camera.lens_x)) || !std::isfinite(length_sq(camera.lens_y)) ||

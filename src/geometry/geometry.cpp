@@ -3,7 +3,9 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace etendue {
 
@@ -32,6 +34,12 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
   indices.resize(first_index + mesh.indices.size());
   std::transform(mesh.indices.begin(), mesh.indices.end(), indices.begin() + std::ptrdiff_t(first_index),
                  [&](std::uint32_t index) { return std::int32_t(first_vertex + index); });
+  float longest_sq = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {2, 0}})
+      longest_sq = std::max(longest_sq, length_sq(mesh.positions[mesh.indices[i + std::size_t(a)]] -
+                                                  mesh.positions[mesh.indices[i + std::size_t(b)]]));
+  longest_edge.back() = std::sqrt(longest_sq);
   return count() - 1;
 }
 
@@ -55,6 +63,7 @@ void Geometry::add_row(SurfaceIds ids) {
   for (std::vector<std::int32_t>* column : {&first_triangle, &has_normals, &has_uvs, &triangles})
     column->push_back(0);
   for (std::vector<std::int32_t>* column : {&sphere, &disk}) column->push_back(-1);
+  longest_edge.push_back(0);
 }
 
 }  // namespace etendue

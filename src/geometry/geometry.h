@@ -49,6 +49,7 @@ class Geometry {
   std::vector<std::int32_t> triangles;       ///< Number of them; 0 unless a mesh.
   std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 unless a sphere.
   std::vector<std::int32_t> disk;            ///< Into `disks`; -1 unless a disk.
+  std::vector<float> longest_edge;           ///< Of a mesh's triangles (m); 0 unless a mesh.
   // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none. The ray
   // caster reads 16 bytes of each position, so one spare vertex always stands behind the last.
   std::vector<Vec3f> positions, normals;

@@ -343,11 +343,12 @@ struct RayCaster::Embree {
   }
 };
 
-RayCaster::RayCaster(const Geometry& geometry) : embree_(std::make_unique<Embree>(geometry)) {
+RayCaster::RayCaster(const Geometry& geometry, Edges edges) : embree_(std::make_unique<Embree>(geometry)) {
   // Without a number of threads: Embree would hold the whole process to it for as long as the device lives.
   embree_->device = rtcNewDevice("");
   if (!embree_->device) throw_embree_error(nullptr, "to start");
   embree_->scene = rtcNewScene(embree_->device);
+  if (edges == Edges::watertight) rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
   const auto attach = [&](RTCGeometry made, std::int32_t number) {
     rtcCommitGeometry(made);
     rtcAttachGeometryByID(embree_->scene, made, unsigned(number));

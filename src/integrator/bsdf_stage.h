@@ -71,7 +71,7 @@ template <class F>
       throughput = throughput * (F(1) / probability);
     }
     store_mask<F>(&block.next_ray.is_active[i], goes_on);
-    store_lanes(block.next_ray.origin, i, vertex.offset_origin(wi));
+    store_lanes(block.next_ray.origin, i, vertex.origin_of_ray(wi));
     store_lanes(block.next_ray.direction, i, wi);
     store_lanes(path.throughput, i, throughput);
     store_lanes(&path.pdf[i], sample.pdf_solid_angle);

@@ -54,7 +54,7 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   if (light_samples > 1) scattered = scattered * F(1 / light_samples);
 
   // What may hide it: shapes along the shadow segment (`V`), and the medium, which dims it.
-  sample.origin = vertex.offset_origin(sample.light.wi);
+  sample.origin = vertex.origin_of_ray(sample.light.wi);
   sample.along = sample.light.end - sample.origin;
   if (scene.medium) scattered = scattered * scene.medium->transmittance(sample.origin, sample.along);
   sample.unshadowed = scattered;

@@ -58,7 +58,7 @@ F weight_at_hit(const PathRules& rules, const PathColumns& path, int i, int vert
   });
 }
 
-/// Adds the emission of the lights that rays have hit from the front.
+/// Adds the emission of the lights that rays have hit on a side that shines.
 template <class F>
 [[gnu::noinline]] void add_emission(const Scene& scene, const LightSampler& light_sampler, SampleBlock& block,
                                     const PathRules& rules, int vertex) {
@@ -70,8 +70,11 @@ template <class F>
     const Mask<F> is_light = mask_and(is_hit, less(Int<F>(-1), light));
     if (!any(is_light)) continue;
     const Ray<F> ray = load_ray<F>(path.ray, i);
-    const Vec3<F> ng = normalize(hit.ng);
-    const Mask<F> is_front = mask_and(is_light, dot(ng, ray.direction) < F(0));
+    Vec3<F> ng = normalize(hit.ng);
+    const F cos_theta_ray = dot(ng, ray.direction);
+    const Mask<F> is_turned = mask_and(scene.lights.is_twosided<F>(light, is_light), cos_theta_ray > F(0));
+    ng = select(is_turned, -ng, ng);
+    const Mask<F> is_front = mask_and(is_light, mask_or(is_turned, cos_theta_ray < F(0)));
     if (!any(is_front)) continue;
     const F weight = weight_at_hit<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
       const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), hit.primitive);

@@ -22,7 +22,7 @@ void sample_simple_light(const Scene& scene, SampleBlock& block, const SimpleLig
     const F inv_distance_sq = F(1) / length_sq(to_light);
     const F cosine = dot(vertex.ns, to_light) * sqrt(inv_distance_sq);
     const F scale = cosine * inv_distance_sq * F(0.25f * inv_pi * inv_pi);
-    const Vec3<F> origin = vertex.offset_origin(to_light);
+    const Vec3<F> origin = vertex.origin_of_ray(to_light);
     store_lanes(block.unshadowed, i,
                 Color<F>{F(light.energy.r) * scale, F(light.energy.g) * scale, F(light.energy.b) * scale});
     // Not "greater than 0": a NaN must reach the sum, where it is reported.

@@ -14,7 +14,7 @@ Hit<float> closest_hit(const Scene& scene, const Ray<float>& ray, float t_near =
                        float t_far = std::numeric_limits<float>::infinity());
 
 /// Whether nothing hides b from a, both in the world (m): by the segment between them but for its end, as
-/// shadow rays go. `a` lies off its surface already (Vertex::offset_origin).
+/// shadow rays go. `a` lies off its surface already (Vertex::origin_of_ray).
 bool is_visible(const Scene& scene, const Vec3f& a, const Vec3f& b);
 
 }  // namespace etendue

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
+#include "geometry/clearance.h"
 #include "geometry/ray.h"
 #include "geometry/surface_uv.h"
 #include "light/receiver.h"
@@ -10,21 +11,12 @@
 
 namespace etendue {
 
-/// A shadow segment ends this far along its way to the light, so that the light does not shadow itself.
-inline constexpr float shadow_segment_end = 1 - 1e-4f;
-
-/// Rays start this far off the surface, as a fraction of the largest coordinate or of the distance from the
-/// ray's origin, whichever is larger: some tens of rounding errors of the hit point.
-inline constexpr float ray_offset = 1e-5f;
+/// A shadow segment ends this far along its way: short of its end by the rounding of its direction. The end
+/// itself lies off the light's surface (LightSample::end).
+inline constexpr float shadow_segment_end = 1 - rounding_bound;
 
 /// The `geometry` of a hit where the path has scattered in the medium, at t; -1: the ray left the scene.
 inline constexpr std::int32_t in_medium = -2;
-
-/// How far off the surface the rays that leave it start (m), for a point found at `distance` along its ray.
-template <class F>
-F ray_clearance(const Vec3<F>& position, const F& distance) {
-  return F(ray_offset) * max(max(abs(position.x), abs(position.y)), max(abs(position.z), distance));
-}
 
 /// A hit's normals, in the lanes of `is_hit`.
 template <class F>
@@ -51,22 +43,25 @@ template <class F>
 struct Vertex {
   Mask<F> is_there;    ///< Elsewhere the ray left the scene.
   Mask<F> is_surface;  ///< Elsewhere, where anything is there, the path scatters in the medium.
-  Vec3<F> position, wo;
-  Vec3<F> ng, ns;  ///< In the medium both are wo.
-  Vec2<F> uv;      ///< Zero unless the scene has textures.
-  F clearance;
+  /// Off the surface, towards wo, by what rounding cannot tell from it: rays on that side start here.
+  Vec3<F> position;
+  Vec3<F> wo;
+  Vec3<F> ng, ns;   ///< In the medium both are wo.
+  Vec2<F> uv;       ///< Zero unless the scene has textures.
+  Vec3<F> across;   ///< From `position` through the surface, to where rays on its other side start.
   Int<F> material;  ///< Any where no surface is.
 
   Vertex(const Scene& scene, const Ray<F>& ray, const Hit<F>& hit) {
     is_surface = less(Int<F>(-1), hit.geometry);
     is_there = is_surface;
     const HitNormals<F> normals(scene, hit, is_surface);
-    position = ray.origin + ray.direction * hit.t;
+    const Vec3<F> along = ray.direction * hit.t, point = ray.origin + along;
+    wo = -ray.direction;
     ng = normals.ng;
     ns = normals.ns;
-    wo = -ray.direction;
-    clearance = ray_clearance(position, hit.t);
     const Int<F> safe = select(is_surface, hit.geometry, Int<F>(0));
+    F height =
+        clearance<F>(ng, abs_each(point) + abs_each(along), gather(scene.geometry.longest_edge.data(), safe));
     material = gather(scene.geometry.material.data(), safe);
     uv = {F(0), F(0)};
     if (scene.materials.have_textures())
@@ -76,8 +71,11 @@ struct Vertex {
       is_there = mask_not(equal(hit.geometry, Int<F>(-1)));
       ng = select(is_in_medium, wo, ng);
       ns = select(is_in_medium, wo, ns);
-      clearance = select(is_in_medium, F(0), clearance);
+      height = select(is_in_medium, F(0), height);
     }
+    const Vec3<F> off = ng * select(dot(ng, wo) > F(0), height, -height);
+    position = point + off;
+    across = off * F(-2);
   }
 
   /// What lights see of the vertex.
@@ -98,8 +96,8 @@ struct Vertex {
   F foreshortening(const F& cos_theta_i) const { return select(is_surface, abs(cos_theta_i), F(1)); }
 
   /// Where a ray along `wi` starts.
-  Vec3<F> offset_origin(const Vec3<F>& wi) const {
-    return position + ng * select(dot(ng, wi) > F(0), clearance, -clearance);
+  Vec3<F> origin_of_ray(const Vec3<F>& wi) const {
+    return select(dot(across, wi) > F(0), position + across, position);
   }
 };
 

@@ -23,7 +23,7 @@ void sample_hemisphere(const Scene& scene, SampleBlock& block, const VisibilityR
         rules.is_cosine_weighted ? square_to_cosine_hemisphere(u_bsdf) : square_to_uniform_cone(u_bsdf, F(1));
     const Vec3<F> wi = Frame<F>(vertex.ns).world_from_local(wi_local);
     store_mask<F>(&block.next_ray.is_active[i], vertex.is_surface);
-    store_lanes(block.next_ray.origin, i, vertex.offset_origin(wi));
+    store_lanes(block.next_ray.origin, i, vertex.origin_of_ray(wi));
     store_lanes(block.next_ray.direction, i, wi);
   }
   block.clock.finish(Stage::bsdf_samples);

@@ -53,7 +53,9 @@ class DiskLights {
     const Vec2<F> on_disk = square_to_uniform_disk(u_disk);
     const Vec3<F> ng = vec(9);
     const Int<F> piece = to_int(u_disk.x * F(4)) * Int<F>(4) + to_int(u_disk.y * F(4));
-    return {vec(0) + vec(3) * on_disk.x + vec(6) * on_disk.y, ng, pdf_area_.at(row), piece};
+    const Vec3<F> center = vec(0), along_x = vec(3), along_y = vec(6);
+    const F clear = clearance<F>(ng, abs_each(center) + abs_each(along_x) + abs_each(along_y), F(0));
+    return {center + along_x * on_disk.x + along_y * on_disk.y, ng, pdf_area_.at(row), clear, piece};
   }
 
  private:

@@ -32,6 +32,12 @@ class Lights : public LightTables {
                 std::get<Table>(tables_).add(std::forward<Light>(light)...));
   }
 
+  /// Makes a light that is a surface shine from its back side as from its front.
+  void set_twosided(std::int32_t light) {
+    is_twosided_.set(light, 1);
+    has_twosided_ = true;
+  }
+
   /// The sphere around all shapes and media, which lights at infinity lie outside of.
   void set_scene_bounds(const Sphere& bounds) { scene_bounds_ = bounds; }
 
@@ -76,6 +82,13 @@ class Lights : public LightTables {
         pdf = select(lanes, table.template pdf_solid_angle<F>(row, pmf, receiver, hit), pdf);
     });
     return pdf;
+  }
+
+  /// Lanes outside of `m` may hold any light, and say nothing.
+  template <class F>
+  Mask<F> is_twosided(const Int<F>& light, const Mask<F>& m) const {
+    if (!has_twosided_) return F(1) < F(0);
+    return less(Int<F>(0), is_twosided_.at(select(m, light, Int<F>(0))));
   }
 
   /// W/(m^2 sr), of a light's surface, on its front side; lanes outside of `m` may hold any light.
@@ -126,7 +139,8 @@ class Lights : public LightTables {
   template <class F>
   LightRequest<F> request(const Int<F>& light, const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
                           const Vec2<UInt<F>>& u, const Mask<F>& lanes) const {
-    return {scene_bounds_, receiver, u, light, row, strength<F>(light, lanes), pmf, lanes};
+    return {scene_bounds_, receiver, u, light, row, strength<F>(light, lanes), is_twosided<F>(light, lanes),
+            pmf,           lanes};
   }
 
   /// Apart, so that the code of all kinds does not weigh on scenes with lights on surfaces only.
@@ -141,6 +155,8 @@ class Lights : public LightTables {
   }
 
   LookupTable<float> red_, green_, blue_;  ///< Strength.
+  LookupTable<std::int32_t> is_twosided_;
+  bool has_twosided_ = false;
   std::vector<std::string> names_;
   std::vector<std::int32_t> infinite_;  ///< Ids of the lights that rays meet at infinity.
   std::int32_t surface_count_ = 0;

@@ -15,17 +15,18 @@ template <class F>
 struct LightRequest {
   const Sphere& scene_bounds;
   const Receiver<F>& receiver;
-  Vec2<UInt<F>> u;    ///< 32-bit fractions, so that choosing among many triangles leaves enough of them.
-  Int<F> light, row;  ///< Its id, and its row in the table of its kind.
-  Color<F> strength;  ///< What `Lights::add` was given.
-  F pmf;              ///< With which the light was chosen: densities have it in them.
-  Mask<F> lanes;      ///< Those that ask.
+  Vec2<UInt<F>> u;      ///< 32-bit fractions, so that choosing among many triangles leaves enough of them.
+  Int<F> light, row;    ///< Its id, and its row in the table of its kind.
+  Color<F> strength;    ///< What `Lights::add` was given.
+  Mask<F> is_twosided;  ///< Surfaces that shine from their back side too.
+  F pmf;                ///< With which the light was chosen: densities have it in them.
+  Mask<F> lanes;        ///< Those that ask.
 };
 
 /// Where a ray has met a light.
 template <class F>
 struct LightHit {
-  Vec3<F> position, ng;  ///< World, m; unit.
+  Vec3<F> position, ng;  ///< World, m; unit, on the side that the ray has met.
   Vec3<F> wi;            ///< Unit, from the receiver.
   Int<F> primitive;      ///< The triangle within a mesh; 0 of other shapes.
 };
@@ -33,7 +34,7 @@ struct LightHit {
 template <class F>
 struct LightSample {
   Vec3<F> wi;   ///< Unit, from the receiver to the light.
-  Vec3<F> end;  ///< World: where the shadow segment ends: on the light, or beyond all shapes.
+  Vec3<F> end;  ///< World: where the shadow segment ends: just off the light, or beyond all shapes.
   /// Incident radiance over its density per solid angle, the choice of the light included. Of Dirac lights
   /// (point, spot, directional) the finite ratio: intensity / distance^2 or irradiance, over the pmf.
   Color<F> radiance_over_pdf;
@@ -61,22 +62,24 @@ LightSample<F> select(const Mask<F>& m, const LightSample<F>& a, const LightSamp
           .piece = select(m, a.piece, b.piece)};
 }
 
-/// A point on an area light as its receiver sees it: radiance x cos(theta_light) / distance^2 / pdf.
+/// A point on an area light as its receiver sees it: radiance x cos(theta_light) / distance^2 / pdf. Of a
+/// two-sided light the side that faces the receiver is the front.
 template <class F>
 LightSample<F> light_sample_at(const LightPoint<F>& point, const LightRequest<F>& request) {
   const Vec3<F> to_light = point.position - request.receiver.position;
   const F distance_sq = length_sq(to_light);
   const F inv_distance = F(1) / sqrt(distance_sq);
   const Vec3<F> wi = to_light * inv_distance;
-  const F cos_theta_light = -dot(point.ng, wi);
-  const Mask<F> is_there =
-      mask_and(request.lanes, is_front_facing(point.position, point.ng, request.receiver.position),
-               point.pdf_area > F(0));
+  const Mask<F> is_turned = mask_and(request.is_twosided, dot(point.ng, wi) > F(0));
+  const Vec3<F> ng = select(is_turned, -point.ng, point.ng);
+  const F cos_theta_light = -dot(ng, wi);
+  const Mask<F> is_there = mask_and(
+      request.lanes, is_front_facing(point.position, ng, request.receiver.position), point.pdf_area > F(0));
 
   const F geometry_term = cos_theta_light * inv_distance * inv_distance;
   const F pdf_area = request.pmf * point.pdf_area;
   return {.wi = wi,
-          .end = point.position,
+          .end = point.position + ng * (point.clearance + clearance<F>(ng, abs_each(to_light), F(0))),
           .radiance_over_pdf = request.strength * select(is_there, geometry_term / pdf_area, F(0)),
           .pdf_solid_angle =
               select(is_there, solid_angle_from_area(pdf_area, distance_sq, cos_theta_light), F(0)),
@@ -122,7 +125,6 @@ template <class F>
 Vec3<F> beyond_scene(const LightRequest<F>& request, const Vec3<F>& wi) {
   const Sphere& bounds = request.scene_bounds;
   const Vec3<F> center{F(bounds.center.x), F(bounds.center.y), F(bounds.center.z)};
-  // A shadow segment stops short of its end by 1e-4 of its length.
   constexpr float margin = 1.001f;
   return request.receiver.position +
          wi * ((length(request.receiver.position - center) + F(bounds.radius)) * F(margin));

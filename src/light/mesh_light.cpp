@@ -97,6 +97,7 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   alias_threshold_.insert(alias_threshold_.end(), table.threshold.begin(), table.threshold.end());
   alias_.insert(alias_.end(), table.alias.begin(), table.alias.end());
   pdf_area_.push_back(float(1 / total_area));
+  longest_edge_.push_back(geometry.longest_edge[std::size_t(geometry_id)]);
   bounds_.push_back(bounds_of(box, across));
   return pdf_area_.size() - 1;
 }

@@ -59,8 +59,11 @@ class MeshLights {
     const Vec2<F> barycentric = square_to_triangle(u_triangle);
 
     LightPoint<F> point;
-    point.position = origin + edge_1 * barycentric.x + edge_2 * barycentric.y;
+    const Vec3<F> along_1 = edge_1 * barycentric.x, along_2 = edge_2 * barycentric.y;
+    point.position = origin + along_1 + along_2;
     point.ng = normalize(cross(edge_1, edge_2));
+    point.clearance = clearance<F>(point.ng, abs_each(origin) + abs_each(along_1) + abs_each(along_2),
+                                   longest_edge_.at(row));
     point.pdf_area = pdf_area_.at(row);
     const I pieces = gather(pieces_.data(), first + triangle.index);
     point.piece = (pieces & I(0xff)) + to_int(u_triangle.y * to_float(pieces >> 8));
@@ -70,7 +73,8 @@ class MeshLights {
  private:
   // Per light.
   LookupTable<std::int32_t> first_triangle_, triangle_count_;
-  LookupTable<float> pdf_area_;  ///< 1 / total area.
+  LookupTable<float> pdf_area_;      ///< 1 / total area.
+  LookupTable<float> longest_edge_;  ///< m
   std::vector<LightBounds> bounds_;
   std::int32_t finely_built_count_ = 0;
   // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first

@@ -21,6 +21,7 @@ class RectangleLights {
     const Vec3f ng = normalize(across);
     for (const Vec3f& v : {corner, edge_u, edge_v, ng}) fields_.insert(fields_.end(), {v.x, v.y, v.z});
     pdf_area_.push_back(1 / length(across));
+    diagonal_.push_back(length(edge_u) + length(edge_v));
     return pdf_area_.size() - 1;
   }
 
@@ -54,12 +55,16 @@ class RectangleLights {
     const F x = to_unit_float(u.x), y = to_unit_float(u.y);
     const Vec3<F> ng = vec(9);
     const Int<F> piece = to_int(x * F(4)) * Int<F>(4) + to_int(y * F(4));
-    return {vec(0) + vec(3) * x + vec(6) * y, ng, pdf_area_.at(row), piece};
+    const Vec3<F> corner = vec(0), edge_u = vec(3), edge_v = vec(6);
+    const F clear =
+        clearance<F>(ng, abs_each(corner) + abs_each(edge_u) + abs_each(edge_v), diagonal_.at(row));
+    return {corner + edge_u * x + edge_v * y, ng, pdf_area_.at(row), clear, piece};
   }
 
  private:
   std::vector<float> fields_;  ///< Corner, two edges, normal: 12 a row.
   LookupTable<float> pdf_area_;
+  LookupTable<float> diagonal_;  ///< At least as long as the longest edge of its triangles (m).
 };
 
 }  // namespace etendue

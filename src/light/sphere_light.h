@@ -1,4 +1,5 @@
-// Spherical area lights: a direction uniform in the cone that the sphere fills.
+// Spherical area lights: a direction uniform in the cone that the sphere fills; from inside, a point uniform
+// on it.
 #pragma once
 
 #include "base/frame.h"
@@ -61,16 +62,17 @@ class SphereLights {
                          (cos_theta + sqrt(max(cone.sin_max_sq - sin_theta_sq, F(0x1p-60f))));
     F sine, cosine;
     sincos_turns(u_cone.y, sine, cosine);
-    const Vec3<F> ng =
+    Vec3<F> ng =
         Frame<F>(-cone.to_center).world_from_local({sin_center * cosine, sin_center * sine, cos_center});
+    if (any(mask_not(cone.is_outside))) {
+      const F z = F(1) - (u_cone.x + u_cone.x), across = sqrt(max(F(1) - z * z, F(0)));
+      ng = select(cone.is_outside, ng, Vec3<F>{across * cosine, across * sine, z});
+    }
     LightPoint<F> point;
-    // Off the sphere, back along its ray, by some rounding errors of the sum, which are large where the
-    // sphere is: else shadow segments would end inside of it.
-    const F lift = F(4e-7f) * (cone.radius + abs(cone.center.x) + abs(cone.center.y) + abs(cone.center.z));
-    const Vec3<F> along = cone.center + ng * cone.radius - reference;
-    const F height = max(-dot(ng, along), lift + lift);
-    point.position = reference + along * (F(1) - lift / height);
+    const Vec3<F> from_center = ng * cone.radius;
+    point.position = cone.center + from_center;
     point.ng = ng;
+    point.clearance = clearance<F>(ng, abs_each(cone.center) + abs_each(from_center), F(0));
     point.pdf_area = pdf_area<F>(row, reference, point.position, ng);
     point.piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));
     return point;
@@ -85,7 +87,8 @@ class SphereLights {
     const F cos_theta_light = dot(ng, to_receiver) / sqrt(distance_sq);
     const F pdf = area_from_solid_angle(uniform_cone_pdf_solid_angle(cone.one_minus_cos_max), distance_sq,
                                         cos_theta_light);
-    return select(mask_and(cone.is_outside, cos_theta_light > F(0)), pdf, F(0));
+    const F pdf_inside = F(0.25f * inv_pi) / (cone.radius * cone.radius);
+    return select(cone.is_outside, select(cos_theta_light > F(0), pdf, F(0)), pdf_inside);
   }
 
  private:

@@ -9,11 +9,13 @@ namespace etendue {
 
 namespace {
 
-const Plugin area_plugin{"light",
-                         std::string(area_light_name),
-                         "The shape shines from its front side, alike in all directions.",
-                         {{"radiance", Parameter::Type::color, "1", "W/(m^2 sr)", "Emitted radiance"}},
-                         {}};
+const Plugin area_plugin{
+    "light",
+    std::string(area_light_name),
+    "The shape shines from its front side, alike in all directions.",
+    {{"radiance", Parameter::Type::color, "1", "W/(m^2 sr)", "Emitted radiance"},
+     {"twosided", Parameter::Type::boolean, "false", "", "Shines from its back side too"}},
+    {}};
 
 /// What a maker is told.
 struct LightDescription {
@@ -74,8 +76,9 @@ const std::vector<Plugin>& light_plugins() {
   return plugins;
 }
 
-Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& unread) {
-  return nonnegative_color(Parameters(description, area_plugin, unread), "radiance");
+AreaLight make_area_light(const Object& description, std::vector<UnreadKey>& unread) {
+  const Parameters parameters(description, area_plugin, unread);
+  return {nonnegative_color(parameters, "radiance"), parameters.boolean("twosided")};
 }
 
 void add_light(const Object& description, const std::filesystem::path& directory, Lights& lights,

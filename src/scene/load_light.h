@@ -17,8 +17,13 @@ const std::vector<Plugin>& light_plugins();
 /// The kind that is the shape it stands in.
 inline constexpr std::string_view area_light_name = "area";
 
-/// W/(m^2 sr), of an area light. Throws InputError for a negative one.
-Colorf area_light_radiance(const Object& description, std::vector<UnreadKey>& unread);
+struct AreaLight {
+  Colorf radiance;   ///< W/(m^2 sr)
+  bool is_twosided;  ///< Whether the back side shines too.
+};
+
+/// Throws InputError for a negative radiance.
+AreaLight make_area_light(const Object& description, std::vector<UnreadKey>& unread);
 
 /// Adds a light that is no area light; where it stands in the file makes no difference. Throws InputError for
 /// an unknown kind, a parameter out of range, an image that cannot be read or used.

@@ -3,6 +3,7 @@
 #include "geometry/bounds.h"
 #include "scene/load_light.h"
 #include "scene/load_shape.h"
+#include "scene/moved_scene.h"
 
 #include <chrono>
 #include <fmt/format.h>
@@ -54,7 +55,7 @@ std::string text_of(const Object& object) {
 /// Collects the parts of a scene as the file lists them.
 class Loader {
  public:
-  explicit Loader(const SceneDesc& description) : description_(description) {}
+  Loader(const SceneDesc& description, Edges edges) : description_(description), edges_(edges) {}
 
   LoadedScene load() {
     const Clock::time_point start = Clock::now();
@@ -71,12 +72,21 @@ class Loader {
           root.location, "the scene has no shapes",
           "add <mesh type=\"obj\"> with a filename; an environment or a medium alone is not rendered");
     const Sphere bounds = bounding_sphere(geometry_);
-    lights_.set_scene_bounds(medium_ ? medium_->bounds_with(bounds) : bounds);
+    const Sphere whole = medium_ ? medium_->bounds_with(bounds) : bounds;
+    lights_.set_scene_bounds(whole);
+    camera_->approach(whole);
     const Clock::time_point start_of_build = Clock::now();
-    RayCaster rays(geometry_);
+    RayCaster rays(geometry_, edges_);
     const double seconds_build = seconds_since(start_of_build);
-    return {Scene{*camera_, filter_ ? *filter_ : PixelFilter::gaussian(), std::move(geometry_),
-                  std::move(rays), Materials(std::move(materials_)), std::move(lights_), medium_, sampler_},
+    return {Scene{{0, 0, 0},
+                  *camera_,
+                  filter_ ? *filter_ : PixelFilter::gaussian(),
+                  std::move(geometry_),
+                  std::move(rays),
+                  Materials(std::move(materials_)),
+                  std::move(lights_),
+                  medium_,
+                  sampler_},
             integrator_ ? *integrator_ : Object{},
             samples_per_pixel_,
             warnings(),
@@ -159,13 +169,17 @@ class Loader {
     }
     SurfaceIds ids{.material = material_id(bsdf)};
     std::optional<Colorf> radiance;
+    bool is_twosided = false;
     if (light && light->type == area_light_name) {
-      radiance = area_light_radiance(*light, unread_);
+      const AreaLight area = make_area_light(*light, unread_);
+      radiance = area.radiance;
+      is_twosided = area.is_twosided;
       ids.light = lights_.count();
     } else if (light) {
       add_light(*light, description_.directory, lights_, unread_);
     }
     add_shape_geometry(object, description_.directory, ids, radiance, geometry_, lights_, unread_, warnings_);
+    if (is_twosided) lights_.set_twosided(ids.light);
     if (has_texture(materials_[std::size_t(ids.material)]) && geometry_.triangles.back() > 0 &&
         geometry_.has_uvs.back() == 0)
       warnings_.push_back(format_message(
@@ -201,6 +215,7 @@ class Loader {
   }
 
   const SceneDesc& description_;
+  Edges edges_;
   std::optional<Camera> camera_;
   std::optional<PixelFilter> filter_;
   std::optional<Object> integrator_;
@@ -218,7 +233,34 @@ class Loader {
 
 }  // namespace
 
-LoadedScene load_scene(const SceneDesc& description) { return Loader(description).load(); }
+LoadedScene load_scene(const SceneDesc& description, Edges edges) {
+  const auto load_about = [&](const Vec3<double>& origin) {
+    const SceneDesc moved = moved_to_origin(description, origin);
+    LoadedScene loaded = Loader(moved, edges).load();
+    loaded.scene.origin = origin;
+    return loaded;
+  };
+  const auto load_nearer = [&](LoadedScene loaded) {
+    const Sphere shapes = bounding_sphere(loaded.scene.geometry);
+    if (!is_far_from_origin(shapes)) return loaded;
+    const Vec3<double>& origin = loaded.scene.origin;
+    return load_about(origin + Vec3<double>{shapes.center.x, shapes.center.y, shapes.center.z});
+  };
+  try {
+    return load_nearer(Loader(description, edges).load());
+  } catch (const InputError&) {
+    // Where the scene is very far away, floats may not tell the corners of a shape apart: the camera is near.
+    const Vec3<double> camera = camera_place(description);
+    if (!(length_sq(camera) > 0)) throw;
+    std::optional<LoadedScene> loaded;
+    try {
+      loaded = load_about(camera);
+    } catch (const InputError&) {
+    }
+    if (!loaded) throw;
+    return load_nearer(std::move(*loaded));
+  }
+}
 
 void check_has_light(const SceneDesc& description, const Scene& scene) {
   if (scene.lights.count() > 0) return;

@@ -20,8 +20,9 @@ struct LoadedScene {
 };
 
 /// Reads the shapes, makes materials and lights, builds the ray caster. Throws InputError for
-/// anything missing, repeated, unknown or degenerate: the message names the object and its place.
-LoadedScene load_scene(const SceneDesc& description);
+/// anything missing, repeated, unknown or degenerate: the message names the object and its place. A scene far
+/// from the origin is moved there (Scene::origin).
+LoadedScene load_scene(const SceneDesc& description, Edges edges = Edges::fast);
 
 /// Throws InputError where `scene`, read from `description`, has no light: for integrators that need one.
 void check_has_light(const SceneDesc& description, const Scene& scene);

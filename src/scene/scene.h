@@ -15,6 +15,7 @@
 namespace etendue {
 
 struct Scene {
+  Vec3<double> origin{0, 0, 0};  ///< In the file's world (m): what the scene itself has at 0 0 0.
   Camera camera;
   PixelFilter filter;
   Geometry geometry;

@@ -83,9 +83,13 @@ struct Alone {
     EXPECT_NEAR(length(wide(point.ng)), 1, 1e-5);
     EXPECT_TRUE(point.piece >= 0 && point.piece < light_pieces) << point.piece;
     const LightSample<float> sample = lights.sample<float>(0, 1, receiver, u, true);
-    EXPECT_EQ(sample.end, point.position);
+    // The shadow segment ends above the point, as far as rounding may misplace it, and no farther.
+    const Vec3d above = wide(sample.end) - wide(point.position);
+    const double size = length(wide(point.position)) + length(wide(from)) + 10;
+    EXPECT_GE(dot(above, wide(point.ng)), 0);
+    EXPECT_LE(length(above), 2e-6 * size);
     const float found =
-        lights.pdf_solid_angle<float>(0, 1, receiver, {sample.end, point.ng, sample.wi, 0}, true);
+        lights.pdf_solid_angle<float>(0, 1, receiver, {point.position, point.ng, sample.wi, 0}, true);
     EXPECT_NEAR(sample.pdf_solid_angle, found, 1e-5f * found);
     if (sample.is_there) {
       const double distance_sq = length_sq(wide(point.position) - wide(from)),
@@ -719,8 +723,9 @@ TEST(LightSample, IntegratesTheSolidAngleAndStatesTheDensityOfItsDirection) {
                                           float(normalize(cross(half_u, half_v)).y),
                                           float(normalize(cross(half_u, half_v)).z)}
                                   : Vec3f{1, 0, 0};
+    const Vec3f on_light = light == 1 ? Vec3f{1, 2, 1} + ng * 0.7f : sample.end;
     const float pdf = scene.lights.pdf_solid_angle<float>(light, 1.0f / 3, receiver_at({0, 0, 0}),
-                                                          {sample.end, ng, sample.wi, 0}, true);
+                                                          {on_light, ng, sample.wi, 0}, true);
     ASSERT_NEAR(sample.pdf_solid_angle / pdf, 1, 2e-4) << "light " << light;
   }
   const MeanTest test = t_test(irradiance, exact);
