@@ -66,7 +66,8 @@ TEST_F(EnvmapFile, IsNamedWithTheTexelThatCannotBeUsed) {
 TEST_F(EnvmapFile, MayBeGreyButNotWithoutColour) {
   EXPECT_EQ(load({2, 1, {{"Y", {1, 2}}}, {}}).scene.lights.infinite_count(), 1);
   EXPECT_THAT(error_of({2, 1, {{"G", {1, 2}}, {"Z", {1, 2}}}, {}}),
-              AllOf(HasSubstr("needs the channels R, G and B, or Y"), HasSubstr("it has: G, Z")));
+              AllOf(HasSubstr("'map.exr' has no colours: these are the channels R, G and B, or Y"),
+                    HasSubstr("it has: G, Z")));
 }
 
 /// The largest and the smallest of what can be told apart; nothing overflows on the way.
@@ -125,7 +126,7 @@ TEST(LoadLight, RefusesWhatMakesNoSense) {
   EXPECT_THAT(light("envmap", R"(<string name="filename" value="none.exr"/>)"),
               HasSubstr("'none.exr' is not there"));
   EXPECT_THAT(light("envmap", R"(<string name="filename" value="scene.xml"/>)"),
-              HasSubstr("neither an EXR nor a PNG image"));
+              HasSubstr("neither an EXR nor a PNG"));
   EXPECT_THAT(
       light("envmap", R"(<string name="filename" value="scene.xml"/><float name="scale" value="-1"/>)"),
       HasSubstr("'scale' is -1"));
