@@ -17,6 +17,7 @@
 namespace etendue {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 Colorf at(const ColorTexture& texture, float u, float v) { return color_at(texture, Vec2f{u, v}, true); }
@@ -112,6 +113,22 @@ TEST(Texture, OtherNamesOfTheForks) {
       "<color name=\"value\" value=\"0.1 0.2 0.3\"/>", [](const auto&) {}, "constant_color");
   EXPECT_TRUE(is_uniform(constant));
   EXPECT_EQ(at(constant, 0.3f, 0.6f), (Colorf{0.1f, 0.2f, 0.3f}));
+}
+
+TEST(Texture, ImagesMayHaveLayers) {
+  const auto two_layers = [](const std::filesystem::path& folder) {
+    write_exr(
+        folder / "a.exr",
+        {1, 1, {{"R", {1}}, {"G", {1}}, {"B", {1}}, {"rust.R", {3}}, {"rust.G", {2}}, {"rust.B", {1}}}, {}});
+  };
+  const auto layer = [](const std::string& name) {
+    return fmt::format("<string name=\"layer\" value=\"{}\"/>", name);
+  };
+  EXPECT_EQ(at(load(file_xml("a.exr"), two_layers), 0.5f, 0.5f), (Colorf{1, 1, 1}));
+  EXPECT_EQ(at(load(file_xml("a.exr") + layer("rust"), two_layers), 0.5f, 0.5f), (Colorf{3, 2, 1}));
+  EXPECT_THAT(test::error_of([&] { load(file_xml("a.exr") + layer("rest"), two_layers); }),
+              AllOf(HasSubstr("scene.xml:1:"), HasSubstr("'a.exr' has no layer 'rest'"),
+                    HasSubstr("^~~~\ndid you mean 'rust'?")));
 }
 
 TEST(Texture, BadOnesAreErrorsThatNameThem) {
