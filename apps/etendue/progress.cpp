@@ -42,7 +42,8 @@ void Progress::update(double fraction) {
   const std::string left =
       fraction > 0 ? duration_text(elapsed_s * (1 - fraction) / fraction) + " left" : std::string("starting");
   if (is_terminal_) {
-    const std::string end = fmt::format("{:3.0f} % {}", 100 * fraction, is_last ? duration_text(elapsed_s) : left);
+    const std::string end =
+        fmt::format("{:3.0f} % {}", 100 * fraction, is_last ? duration_text(elapsed_s) : left);
     // A line that is full would wrap, and a carriage return then goes back to its last part only.
     const int room = terminal_width() - 1;
     const int width = std::min(40, room - int(what_.size() + end.size()) - 4);

@@ -106,8 +106,7 @@ TEST_F(ExrColors, PartsAreLayers) {
                {"depth", "Z"}});
   EXPECT_THAT(color("right"), ElementsAre(4, 5, 6));
   EXPECT_THAT(color("passes.glow"), ElementsAre(7, 8, 9));
-  EXPECT_THAT(error(),
-              AllOf(HasSubstr("has several layers"), HasSubstr("known: left, right, passes.glow")));
+  EXPECT_THAT(error(), AllOf(HasSubstr("has several layers"), HasSubstr("known: left, right, passes.glow")));
   write_parts({{"depth", "Z"}, {"picture", "picture.R", "picture.G", "picture.B"}});
   EXPECT_THAT(color(), ElementsAre(2, 3, 4));
   EXPECT_THAT(color("picture"), ElementsAre(2, 3, 4));
