@@ -63,7 +63,7 @@ void check_overwrites_nothing(const std::vector<std::string>& written,
 
 void write_text_file(const std::filesystem::path& file, const std::string& text) {
   TemporaryFile out(file);
-  std::fwrite(text.data(), 1, text.size(), out.stream());
+  out.write(text.data(), text.size());
   out.commit();
 }
 

@@ -4,10 +4,21 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 #include <utility>
 
 namespace etendue::app {
+
+namespace {
+
+/// Of the terminal, in characters; 80 where it does not say.
+int terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
 
 Progress::Progress(std::string what, bool is_quiet)
     : what_(std::move(what)),
@@ -31,10 +42,17 @@ void Progress::update(double fraction) {
   const std::string left =
       fraction > 0 ? duration_text(elapsed_s * (1 - fraction) / fraction) + " left" : std::string("starting");
   if (is_terminal_) {
-    constexpr int width = 40;
-    const int full = std::clamp(int(fraction * width), 0, width);
-    app::say("\r{} [{:#<{}}{: <{}}] {:3.0f} % {} \x1b[K", what_, "", full, "", width - full, 100 * fraction,
-             is_last ? duration_text(elapsed_s) : left);
+    const std::string end =
+        fmt::format("{:3.0f} % {}", 100 * fraction, is_last ? duration_text(elapsed_s) : left);
+    // A line that is full would wrap, and a carriage return then goes back to its last part only.
+    const int room = terminal_width() - 1;
+    const int width = std::min(40, room - int(what_.size() + end.size()) - 4);
+    std::string line = end;
+    if (width >= 4) {
+      const int full = std::clamp(int(fraction * width), 0, width);
+      line = fmt::format("{} [{:#<{}}{: <{}}] {}", what_, "", full, "", width - full, end);
+    }
+    app::say("\r{}\x1b[K", line.substr(0, std::size_t(std::max(room, 0))));
     has_bar_ = true;
   } else {
     app::say("{}: {:.0f} %, {}\n", what_, 100 * fraction, left);

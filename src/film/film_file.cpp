@@ -59,9 +59,9 @@ bool is_whole(const PixelStatistics& pixel, const FilmBlock& block) {
 
 class Writer {
  public:
-  explicit Writer(std::FILE* stream) : stream_(stream) {}
+  explicit Writer(TemporaryFile& file) : file_(file) {}
   void bytes(const void* data, std::size_t count) {
-    std::fwrite(data, 1, count, stream_);  // What fails is found by TemporaryFile::commit.
+    file_.write(data, count);
     hash_.add(data, count);
   }
   template <class T>
@@ -75,7 +75,7 @@ class Writer {
   void checksum() { number(hash_.digest()); }
 
  private:
-  std::FILE* stream_;
+  TemporaryFile& file_;
   ContentHash hash_;
 };
 
@@ -181,7 +181,7 @@ void write_film(const std::filesystem::path& file, const FilmState& state) {
   check_writable(file, state);
   const FilmOrigin& origin = state.origin;
   TemporaryFile temporary(file);
-  Writer out(temporary.stream());
+  Writer out(temporary);
   out.bytes(magic.data(), magic.size());
   out.number(format_version);
   out.number(std::uint32_t(state.film.width()));

@@ -20,6 +20,7 @@ namespace {
 class StdioStream : public Imf::OStream {
  public:
   StdioStream(std::FILE* stream, const std::string& name) : OStream(name.c_str()), stream_(stream) {}
+  int error() const { return error_; }  ///< What the system said of the first write that failed; 0: none has.
   void write(const char* bytes, int count) override {
     if (std::fwrite(bytes, 1, std::size_t(count), stream_) != std::size_t(count)) fail();
   }
@@ -29,8 +30,12 @@ class StdioStream : public Imf::OStream {
   }
 
  private:
-  [[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
+  [[noreturn]] void fail() {
+    if (error_ == 0) error_ = errno;
+    throw std::system_error(errno, std::generic_category());
+  }
   std::FILE* stream_;
+  int error_ = 0;
 };
 
 void check_name(const std::filesystem::path& file, const char* what, const std::string& name, bool is_taken) {
@@ -74,13 +79,18 @@ void write_exr(const std::filesystem::path& file, const Image& image) {
                   Imf::Slice(Imf::FLOAT, values, sizeof(float), sizeof(float) * std::size_t(image.width)));
   }
   TemporaryFile temporary(file);
+  StdioStream stream(temporary.stream(), file.string());
   try {
-    StdioStream stream(temporary.stream(), file.string());
     Imf::OutputFile output(stream, header);
     output.setFrameBuffer(pixels);
     output.writePixels(image.height);
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: cannot write: {}", file.string(), error.what()));
+    errno = stream.error();
+    temporary.fail_to_write(error.what());
+  }
+  if (stream.error() != 0) {  // In a destructor.
+    errno = stream.error();
+    temporary.fail_to_write("");
   }
   temporary.commit();
 }

@@ -35,18 +35,11 @@ void write_exr(const std::filesystem::path& file, const Image& image);
 /// write_exr; all three channels are needed.
 void write_png(const std::filesystem::path& file, const Image& image);
 
-/// Any single-part scanline or tiled EXR: its data window (where that lies in the display window is not
-/// kept), all channels as float by name in alphabetical order, and the attributes that are strings. Of a
-/// mip-mapped file, the full size. Throws InputError for what cannot be read, deep, multi-part and
-/// chroma-subsampled files among it; it never allocates more than a file of that many bytes can hold.
+/// The first part of an EXR, scanlines or tiles: what its display window shows, black beside the data window;
+/// all channels as float by name in alphabetical order, and the attributes that are strings. Of a mip-mapped
+/// file, the full size. Throws InputError for what cannot be read, deep and chroma-subsampled files among it;
+/// it never allocates more than a file of that many bytes can hold, 512 MiB aside.
 Image read_exr(const std::filesystem::path& file);
-
-/// How the numbers of a PNG are meant: encoded light (IEC 61966-2-1), or plain numbers from 0 to 1.
-enum class PngEncoding { srgb, linear };
-/// R, G and B as linear values from 0 to 1, from any PNG of up to 2^28 pixels: grey, palette or colour, up to
-/// 16 bits a channel. Alpha, colour profiles and gamma chunks are left aside. Throws InputError for what
-/// cannot be read.
-Image read_png(const std::filesystem::path& file, PngEncoding encoding);
 
 enum class ImageFormat { exr, png };
 /// By the ending of the name, in small letters or capitals; none where it is neither.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <fmt/format.h>
 #include <png.h>
@@ -50,8 +51,9 @@ void write_png(const std::filesystem::path& file, const Image& image) {
   png.width = png_uint_32(image.width);
   png.height = png_uint_32(image.height);
   png.format = PNG_FORMAT_RGB;  // 8 bits: libpng then tags the file as sRGB.
+  errno = 0;
   if (!png_image_write_to_stdio(&png, temporary.stream(), 0, pixels.data(), 0, nullptr))
-    throw InputError(fmt::format("{}: cannot write: {}", file.string(), png.message));
+    temporary.fail_to_write(png.message);
   temporary.commit();
 }
 

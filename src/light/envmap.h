@@ -21,8 +21,11 @@ namespace etendue {
 /// and last row are the caps about the poles. Sampling takes a row of cells, a cell in it, and a place in the
 /// cell by the bilinear interpolation of luminance x sin(theta) of the four texels around it (of the
 /// luminance alone, and uniform in cos(theta), in the caps). So radiance over density is nearly constant: the
-/// two differ only by how much sin(theta) differs from its own interpolation. The density integrates to 1 and
-/// is 0 only where the radiance is, or where a cell has less than 2^-30 of its row's light or its row of all.
+/// two differ only by how much sin(theta) differs from its own interpolation. But no cell is chosen less
+/// often than in 1 of 20 samples by the map with its luminance capped at about 8 times the mean of what is
+/// left: a sun behind the horizon must not take all samples, and where it has less than 19 of 20 parts of the
+/// light, that changes hardly anything. The density integrates to 1 and is 0 only where the radiance is, or
+/// where a cell has less than 2^-30 of its row's share or its row of all.
 class Envmap {
  public:
   /// \param rgb three numbers a texel, rows from the top (v = 0), finite and not negative, not all 0

@@ -17,7 +17,8 @@ const Plugin envmap_plugin{
     "light",
     "envmap",
     "Light from all around, by an image in latitude and longitude; y of the light is up.",
-    {{"filename", Type::text, "", "", "An EXR or PNG image, relative to the scene file", true},
+    {{"filename", Type::text, "", "", "An image (EXR, PNG, JPEG, HDR), relative to the scene file", true},
+     {"layer", Type::text, "", "", "Of an EXR: a part or a group of channels by its name"},
      {"scale", Type::real, "1", "", "Factor of the image's radiance"},
      {"toWorld", Type::transform, "", "", "World from light, a rotation; identity unless given"}},
     {}};
@@ -34,8 +35,7 @@ namespace {
 
 /// The image's colour, three numbers a texel.
 Envmap read_envmap(const Parameters& parameters, const std::filesystem::path& directory) {
-  const ColorImage color = read_color_image(parameters, "filename", directory, PngEncoding::srgb);
-  const Image& image = color.image;
+  ColorImage image = read_color_image(parameters, "filename", directory, false);
   const auto fail = [&](const std::string& problem, const std::string& hint) {
     return InputError(parameters.location("filename"),
                       fmt::format("{}: {}", (directory / parameters.text("filename")).string(), problem),
@@ -45,22 +45,23 @@ Envmap read_envmap(const Parameters& parameters, const std::filesystem::path& di
   if (3 * width * height > std::size_t(std::numeric_limits<std::int32_t>::max()))
     throw fail(fmt::format("{} x {} texels are more than an environment map can have", width, height),
                "scale it down to at most 715 million texels");
+  if (image.is_cube_map)
+    throw fail("this image says that it is a cube map (its attribute 'envmap')",
+               "convert it to latitude and longitude: exrenvmap -l CUBE.exr MAP.exr");
   // Sums of a few texels, weighted, must stay finite.
   constexpr float largest = 1e30f;
-  std::vector<float> rgb(3 * width * height);
   bool is_black = true;
-  for (std::size_t i = 0; i < width * height; ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float value = color.value(i, k);
-      if (!(value >= 0 && value <= largest))
-        throw fail(fmt::format("texel ({}, {}) is {} {} {}", i % width, i / width, color.value(i, 0),
-                               color.value(i, 1), color.value(i, 2)),
-                   fmt::format("radiance must be a number from 0 to {:g}; mend the image", largest));
-      is_black = is_black && value == 0;
-      rgb[3 * i + k] = value;
-    }
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const float value = image.rgb[i];
+    const float* const texel = &image.rgb[i - i % 3];
+    if (!(value >= 0 && value <= largest))
+      throw fail(fmt::format("texel ({}, {}) is {} {} {}", i / 3 % width, i / 3 / width, texel[0], texel[1],
+                             texel[2]),
+                 fmt::format("radiance must be a number from 0 to {:g}; mend the image", largest));
+    is_black = is_black && value == 0;
+  }
   if (is_black) throw fail("all texels are 0: this environment map gives no light", "leave it out");
-  return {image.width, image.height, std::move(rgb)};
+  return {image.width, image.height, std::move(image.rgb)};
 }
 
 }  // namespace

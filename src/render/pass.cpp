@@ -147,7 +147,8 @@ Passes::Passes(const Scene& scene, const RenderSettings& settings, const Progres
   const int threads = settings.threads > 0 ? settings.threads : available_threads();
   threads_.reset(new Threads{scene, settings, progress, stop, kernel_for(settings.isa),
                              light_sampler_for(settings.integrator, scene.lights), threads,
-                             tbb::task_arena(threads)});
+                             // TBB gives no more than there are, and says on stderr that it does not.
+                             tbb::task_arena(std::min(threads, available_threads()))});
 }
 
 Passes::~Passes() = default;

@@ -30,9 +30,10 @@ T choice(const Parameters& parameters, const char* key,
 const Plugin image_texture_plugin{
     "texture",
     "imagetexture",
-    "An image file (EXR, PNG) over the unit square of uv: u to the right, v up.",
+    "An image file (EXR, PNG, JPEG, HDR) over the unit square of uv: u to the right, v up.",
     {{"filename", Type::text, "", "", "The file, relative to the scene file", true},
-     {"raw", Type::boolean, "false", "", "A PNG's values are plain numbers, not sRGB"},
+     {"layer", Type::text, "", "", "Of an EXR: a part or a group of channels by its name"},
+     {"raw", Type::boolean, "false", "", "The values are plain numbers, not colours"},
      {"interpolation", Type::text, "bilinear", "", "Between pixels: bilinear or nearest"},
      {"wrap", Type::text, "repeat", "", "Outside of the unit square: repeat, mirror or clamp"}},
     {}};
@@ -48,9 +49,7 @@ ImageTexture make_image_texture(const Object& description, const std::filesystem
       {{{"bilinear", Interpolation::bilinear}, {"nearest", Interpolation::nearest}}});
   texture.wrap = choice<Wrap, 3>(
       parameters, "wrap", {{{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}}});
-  const ColorImage color = read_color_image(
-      parameters, "filename", directory, parameters.boolean("raw") ? PngEncoding::linear : PngEncoding::srgb);
-  const Image& image = color.image;
+  const ColorImage image = read_color_image(parameters, "filename", directory, parameters.boolean("raw"));
   texture.width = image.width;
   texture.height = image.height;
   const std::size_t width = std::size_t(image.width), height = std::size_t(image.height);
@@ -61,7 +60,7 @@ ImageTexture make_image_texture(const Object& description, const std::filesystem
   for (std::size_t y = 0; y < height; ++y)
     for (std::size_t x = 0; x < width; ++x)
       for (std::size_t c = 0; c < 3; ++c) {
-        const float value = color.value((height - 1 - y) * width + x, c);
+        const float value = image.rgb[3 * ((height - 1 - y) * width + x) + c];
         if (!(value >= 0 && std::isfinite(value)))
           throw InputError(
               parameters.location("filename"),

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <pty.h>
 #include <random>
 
 namespace etendue::test {
@@ -76,6 +77,47 @@ TEST_F(CommandLine, QuietSaysNothing) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.out, IsEmpty());
   EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(CommandLine, MoreThreadsThanProcessorsAreNoMatter) {
+  const std::string threads = std::to_string(3 * std::thread::hardware_concurrency());
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--sample-order"}}) {
+    std::vector<std::string> arguments{"render", "scene.xml", "-o", "a.exr", "--quiet", "--threads", threads};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.out + result.err, IsEmpty());
+  }
+}
+
+/// A line that is full would be wrapped, and what is written over it would go to a new one.
+TEST_F(CommandLine, TheProgressBarFitsTheTerminal) {
+  write_file(path("scene.xml"), scene_xml(200, 200));
+  for (const unsigned short columns : {120, 64, 40, 20, 8}) {
+    int terminal = -1, end = -1;
+    const winsize size{24, columns, 0, 0};
+    ASSERT_EQ(openpty(&terminal, &end, nullptr, nullptr, &size), 0);
+    Program program(
+        {"render", "scene.xml", "-o", "a.exr", "--threads", "1", "--isa", "scalar", "--spp", "64"},
+        folder_.path(), end);
+    close(end);
+    std::string seen;
+    char buffer[4096];
+    for (ssize_t count; (count = read(terminal, buffer, sizeof buffer)) > 0;)
+      seen.append(buffer, std::size_t(count));
+    close(terminal);
+    EXPECT_EQ(program.wait().exit_code, 0);
+    // Of the pieces between line feeds and carriage returns, those that are of the bar end by clearing the
+    // line.
+    int updates = 0;
+    for (std::size_t begin = 0; (begin = seen.find('\r', begin)) != std::string::npos;) {
+      const std::size_t stop = seen.find_first_of("\r\n\x1b", ++begin);
+      if (stop == std::string::npos || seen.compare(stop, 3, "\x1b[K") != 0) continue;
+      EXPECT_LT(stop - begin, columns) << seen.substr(begin, stop - begin);
+      updates += stop > begin;
+    }
+    EXPECT_GT(updates, 0) << columns;
+  }
 }
 
 TEST_F(CommandLine, WritesEveryOutput) {

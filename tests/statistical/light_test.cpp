@@ -8,8 +8,8 @@
 // or that of its box, or its radius is u; a point's power is over 2 pi, its distance left out; a spot's power
 // is by the mean of its edges' cosines, or it shines backwards; a direction is reversed or not turned; of a
 // map, the seam is left out, phi runs the other way, the rotation is transposed, sin(theta) is left out of
-// weights or density, the caps are even in theta, places in a cell are uniform, or the search for a cell is
-// off; the choice's pmf is missing; a segment ends within the scene.
+// weights or density, the caps are even in theta, places in a cell are uniform, the search for a cell is
+// off, or the share beside a sun is missing; the choice's pmf is missing; a segment ends within the scene.
 #include "light/light.h"
 
 #include "geometry/bounds.h"
@@ -377,6 +377,30 @@ TEST(Envmap, DirectionsFollowTheDensity) {
         "map of " + std::to_string(width) + " x " + std::to_string(height) + (has_hot_texel ? ", hot" : ""),
         60, 1e-3);
   }
+}
+
+/// A sun below the horizon has all but 1e-7 of the light, and what lies in the sky must be found all the
+/// same.
+TEST(Envmap, WhatIsBesideASunKeepsAShareOfTheSamples) {
+  constexpr int width = 32, height = 16;
+  Alone alone;
+  std::vector<float> rgb(3 * width * height);
+  std::fill_n(rgb.begin(), rgb.size() / 2, 1.0f);
+  for (std::size_t k = 0; k < 3; ++k) rgb[k + 3 * (width * 12 + 5)] = 1e10f;
+  add_envmap(alone, width, height, rgb, rotation({1, 0, 0}, 90));
+  expect_directions_follow_density(alone, "map with a sun", 60, 1e-3);
+  RunningStatistics irradiance, is_in_sky;
+  RandomBits random(18);
+  for (int i = 0; i < samples; ++i) {
+    const LightSample<float> sample = sample_of(alone, random.square());
+    const bool is_high = sample.wi.z > 0.5f;
+    irradiance.add(is_high ? double(sample.radiance_over_pdf.g * sample.wi.z) : 0);
+    is_in_sky.add(is_high);
+  }
+  const MeanTest test = t_test(irradiance, 0.75 * std::numbers::pi);
+  EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
+      << irradiance.mean << ", p = " << test.p_value;
+  EXPECT_NEAR(is_in_sky.mean, 0.05 * 0.5, 0.005);  // Half of the sky, which has 1 of 20 samples.
 }
 
 TEST(Envmap, NoDirectionOfABlackTexelIsSampled) {

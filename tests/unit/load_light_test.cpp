@@ -7,6 +7,10 @@
 #include "support/error_of.h"
 #include "test_scene.h"
 
+#include <ImfEnvmap.h>
+#include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -30,16 +34,24 @@ std::string error_of(const std::string& lights) {
 
 class EnvmapFile : public testing::Test {
  protected:
-  /// Loads a scene whose environment map is `image`.
-  LoadedScene load(const Image& image) const {
-    write_exr(folder_.path() / "map.exr", image);
+  /// Loads a scene whose environment map `write` makes.
+  template <class Write>
+  LoadedScene load_file(const Write& write) const {
+    write(folder_.path() / "map.exr");
     std::ofstream(folder_.path() / "scene.xml")
         << "<scene>" << camera << shape
         << R"(<emitter type="envmap"><string name="filename" value="map.exr"/></emitter></scene>)";
     return load_scene(read_nori_xml(folder_.path() / "scene.xml", Dialect::nori));
   }
+  LoadedScene load(const Image& image) const {
+    return load_file([&](const std::filesystem::path& file) { write_exr(file, image); });
+  }
   std::string error_of(const Image& image) const {
     return test::error_of([&] { load(image); });
+  }
+  template <class Write>
+  std::string error_of_file(const Write& write) const {
+    return test::error_of([&] { load_file(write); });
   }
   static Image grey(float value, float odd) {
     Image image{4, 2, {{"B", {}}, {"G", {}}, {"R", {}}}, {}};
@@ -66,7 +78,20 @@ TEST_F(EnvmapFile, IsNamedWithTheTexelThatCannotBeUsed) {
 TEST_F(EnvmapFile, MayBeGreyButNotWithoutColour) {
   EXPECT_EQ(load({2, 1, {{"Y", {1, 2}}}, {}}).scene.lights.infinite_count(), 1);
   EXPECT_THAT(error_of({2, 1, {{"G", {1, 2}}, {"Z", {1, 2}}}, {}}),
-              AllOf(HasSubstr("needs the channels R, G and B, or Y"), HasSubstr("it has: G, Z")));
+              AllOf(HasSubstr("'map.exr' has no colours: these are the channels R, G and B, or Y"),
+                    HasSubstr("it has: G, Z")));
+}
+
+TEST_F(EnvmapFile, IsNoCubeMap) {
+  EXPECT_THAT(error_of_file([](const std::filesystem::path& file) {
+                Imf::Header header(1, 6);
+                Imf::addEnvmap(header, Imf::ENVMAP_CUBE);
+                Imf::RgbaOutputFile output(file.c_str(), header);
+                const std::array<Imf::Rgba, 6> pixels{};
+                output.setFrameBuffer(pixels.data(), 1, 1);
+                output.writePixels(6);
+              }),
+              AllOf(HasSubstr("map.exr: this image says that it is a cube map"), HasSubstr("exrenvmap -l")));
 }
 
 /// The largest and the smallest of what can be told apart; nothing overflows on the way.
@@ -125,7 +150,7 @@ TEST(LoadLight, RefusesWhatMakesNoSense) {
   EXPECT_THAT(light("envmap", R"(<string name="filename" value="none.exr"/>)"),
               HasSubstr("'none.exr' is not there"));
   EXPECT_THAT(light("envmap", R"(<string name="filename" value="scene.xml"/>)"),
-              HasSubstr("neither an EXR nor a PNG image"));
+              HasSubstr("neither an EXR nor a PNG"));
   EXPECT_THAT(
       light("envmap", R"(<string name="filename" value="scene.xml"/><float name="scale" value="-1"/>)"),
       HasSubstr("'scale' is -1"));

@@ -80,6 +80,21 @@ TEST_F(PngFile, SaysWhatIsMissing) {
   EXPECT_TRUE(fs::is_empty(folder));
 }
 
+TEST_F(PngFile, AFullDiskIsCalledSo) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  std::vector<float> values(300 * 300);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = std::abs(std::sin(float(i * i)));  // Hard to compress.
+  for (const std::string name : {"image.png", "image.exr"}) {
+    fs::create_symlink("/dev/full", folder / name);
+    const Image image{300, 300, {{"R", values}, {"G", values}, {"B", values}}, {}};
+    EXPECT_THAT(test::error_of([&] {
+                  name == "image.png" ? write_png(folder / name, image) : write_exr(folder / name, image);
+                }),
+                HasSubstr(name + ": cannot write: No space left on device"));
+  }
+}
+
 TEST_F(PngFile, CheckWritableAsksBeforeTheRender) {
   EXPECT_NO_THROW(check_writable(file));
   EXPECT_NO_THROW(check_writable(folder / "a.b.exr"));
