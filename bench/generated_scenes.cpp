@@ -77,10 +77,11 @@ Scene seen_from_the_front(Geometry geometry, Lights lights, int width_px, int he
   camera.height_px = height_px;
   camera.origin = {0, 3, 8};
   camera.start = {0, 3, 8};
-  const Vec3f forward = normalize(Vec3f{0, -0.35f, -1}), right{1, 0, 0}, up = cross(right, forward);
-  camera.per_px_x = right * (1.2f / float(width_px));
-  camera.per_px_y = up * (-0.8f / float(height_px));
-  camera.at_film_origin = forward - right * 0.6f + up * 0.4f;
+  const Vec3<double> forward = normalize(Vec3<double>{0, -0.35, -1}), right{1, 0, 0},
+                     up = cross(right, forward);
+  camera.per_px_x = right * (1.2 / width_px);
+  camera.per_px_y = up * (-0.8 / height_px);
+  camera.at_film_origin = forward - right * 0.6 + up * 0.4;
   RayCaster rays(geometry);
   return {.camera = camera,
           .filter = PixelFilter::box(),

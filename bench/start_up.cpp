@@ -192,8 +192,8 @@ int main(int argc, char** argv) {
   camera.origin = {0, 5, 0};
   camera.start = {0, 5, 0};
   camera.at_film_origin = {-1, -1, -1};
-  camera.per_px_x = {1.0f / 16, 0, 0};
-  camera.per_px_y = {0, 0, 1.0f / 16};
+  camera.per_px_x = {1.0 / 16, 0, 0};
+  camera.per_px_y = {0, 0, 1.0 / 16};
   Lights lights;
   lights.add<MeshLights>({1, 1, 1}, "sheet", geometry, 0);
   const Scene scene{.camera = camera,

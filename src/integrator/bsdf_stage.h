@@ -45,14 +45,17 @@ template <class F>
     for_each_scatterer<F>(scene, vertex, vertex.is_there, [&](const auto& bsdf, const Mask<F>& lanes) {
       sample = select(lanes, bsdf.sample(wo_local, u_bsdf), sample);
     });
-    const Vec3<F> wi = frame.world_from_local(sample.wi_local);
+    // Made unit: a frame about a direction that is not gives one that is less so, and errors would grow with
+    // each vertex.
+    const F size_sq = length_sq(sample.wi_local);
+    const Vec3<F> wi = normalize(frame.world_from_local(sample.wi_local));
     const Mask<F> is_dirac = sample.pdf_solid_angle == infinity;
     Color<F> throughput = load_lanes<F>(path.throughput, i) * sample.weight;
     if (several > 1) throughput = throughput * F(1 / float(several));
     const F eta = load_lanes<F>(&path.eta[i]) * sample.eta;
     const Mask<F> is_number =
         mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
-                 is_finite_nonnegative(throughput.b), sample.pdf_solid_angle >= F(0), dot(wi, wi) < F(2));
+                 is_finite_nonnegative(throughput.b), sample.pdf_solid_angle >= F(0), abs(size_sq - F(1)) < F(1e-3f));
     const Mask<F> is_lost = mask_and(vertex.is_there, mask_not(is_number));
     // What is not a number must reach the sum, where it is reported.
     if (any(is_lost)) {
