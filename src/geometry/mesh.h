@@ -19,6 +19,7 @@ struct Mesh {
   std::vector<Vec2f> uvs;              ///< One per position, or empty.
   std::vector<std::uint32_t> indices;  ///< Three per triangle.
   std::size_t dropped_triangles = 0;   ///< Left out for having no area; worth a warning.
+  std::vector<std::string> warnings;   ///< What is odd about the file; complete messages.
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };

@@ -4,6 +4,7 @@
 #include "geometry/mesh_text.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <utility>
 
 namespace etendue {
@@ -57,19 +58,37 @@ MeshBuilder::MeshBuilder(std::string name, MeshParts parts, bool has_uvs, bool h
 }
 
 void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {
-  if (c.size() == 4) {
-    add_triangle(face, {c[0], c[1], c[2]});
-    add_triangle(face, {c[3], c[0], c[2]});
-  } else {
-    for (std::size_t k = 1; k + 1 < c.size(); ++k) add_triangle(face, {c[0], c[k], c[k + 1]});
-  }
+  if (c.size() == 3) return add_triangle(face, {c[0], c[1], c[2]});
+  polygon_.clear();
+  for (const Corner& corner : c) polygon_.push_back(to_double(parts_.positions[corner.position]));
+  triangulate(polygon_, triangles_);
+  for (const auto& [i, j, k] : triangles_.corners) add_triangle(face, {c[i], c[j], c[k]});
+  if (!triangles_.is_simple)
+    crossing_.add(face);
+  else if (!triangles_.is_flat)
+    bent_.add(face);
 }
 
 Mesh MeshBuilder::finish() && {
   if (mesh_.indices.empty())
     throw errors_.at_face(0, "no triangle has an area",
                           "the mesh, or the transform it is given, is flat; check its scale");
+  warn(crossing_, "this polygon crosses itself, or is folded", "{} polygons cross themselves, or are folded",
+       "it has no inside to fill with triangles, and gets a fan from its first corner; cut it in two");
+  warn(bent_, "the corners of this polygon lie far from one plane",
+       "the corners of {} polygons lie far from one plane",
+       "it has no shape of its own, and gets triangles by how it looks from the front; cut it in two");
   return std::move(mesh_);
+}
+
+/// \param problems where there are several; their number for {}
+void MeshBuilder::warn(const OddFaces& faces, std::string_view problem, std::string_view problems,
+                       std::string_view hint) {
+  if (faces.count == 0) return;
+  const std::string said = faces.count == 1
+                               ? std::string(problem)
+                               : fmt::format(fmt::runtime(problems), faces.count) + "; the first";
+  mesh_.warnings.emplace_back(errors_.at_face(faces.first, said, hint).what());
 }
 
 void MeshBuilder::add_triangle(std::size_t face, std::array<Corner, 3> corners) {

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "geometry/mesh.h"
+#include "geometry/polygon.h"
 
 #include <array>
 #include <cstdint>
@@ -53,7 +54,8 @@ class VertexTable {
 /// Vertices appear in the order of their first use; a position used with several uvs or normals becomes
 /// several vertices.
 ///
-/// - A quad is split (0,1,2),(3,0,2), as in Nori; a larger polygon is a fan.
+/// - What has more corners than three is cut into triangles as triangulate() says; polygons that cross
+///   themselves, or are far from flat, are warned of, with the first of them.
 /// - If any corner has a normal, a triangle that lacks one at a corner is flat: its corners get its geometric
 ///   normal. Likewise uvs: (0, 0) where a corner has none.
 /// - With vertex normals, a triangle whose winding points against the sum of its three normals gets its
@@ -85,6 +87,15 @@ class MeshBuilder {
   Mesh finish() &&;
 
  private:
+  /// Faces of one fault: the first of them, and how many.
+  struct OddFaces {
+    std::size_t first, count = 0;
+    void add(std::size_t face) {
+      if (count++ == 0) first = face;
+    }
+  };
+  void warn(const OddFaces& faces, std::string_view problem, std::string_view problems,
+            std::string_view hint);
   void add_triangle(std::size_t face, std::array<Corner, 3> corners);
   void give_normals(std::array<Corner, 3>& corners, const Vec3<double>& double_area_normal);
   void add_vertex(const Corner& corner);
@@ -93,6 +104,9 @@ class MeshBuilder {
   bool has_uvs_, has_normals_;
   Errors errors_;
   VertexTable vertices_;
+  PolygonTriangles triangles_;
+  std::vector<Vec3<double>> polygon_;
+  OddFaces crossing_, bent_;
   Mesh mesh_;
 };
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,7 @@ struct Statements : MeshParts {
   std::vector<ZeroNormal> zero_normals;
   std::vector<Face> faces;
   std::vector<Corner> corners;
+  std::optional<std::size_t> first_material;  ///< Where the first statement about materials stands.
 };
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
@@ -126,6 +128,8 @@ class Parser {
         read_uv();
       else if (cursor_.accept("f"))
         read_face(start);
+      else if (!read_.first_material && (cursor_.accept("usemtl") || cursor_.accept("mtllib")))
+        read_.first_material = start;
       cursor_.skip_line();
     }
     const auto index_count = 3 * (read_.corners.size() - 2 * read_.faces.size());
@@ -276,6 +280,7 @@ class Assembler {
       has_normals |= corner.normal != none;
     }
     for (std::size_t f = 0; f < read_.faces.size(); ++f) check_face(f);
+    const auto first_material = read_.first_material;
     const auto fail_at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
       return error(read_.faces[face].offset, problem, hint);
     };
@@ -290,7 +295,13 @@ class Assembler {
     for (std::size_t f = 0; f < read_.faces.size(); ++f)
       builder.add_face(
           f, std::span(read_.corners).subspan(first_corner(f), first_corner(f + 1) - first_corner(f)));
-    return std::move(builder).finish();
+    Mesh mesh = std::move(builder).finish();
+    if (first_material)
+      mesh.warnings.emplace_back(
+          error(*first_material, "the materials of this file are passed over",
+                "all of the mesh has the bsdf and emitter that the scene file gives it")
+              .what());
+    return mesh;
   }
 
  private:

@@ -11,6 +11,7 @@
 #include <string>
 #include <type_traits>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace etendue {
@@ -209,7 +210,10 @@ class Loader {
 
   std::vector<std::string> warnings() const {
     std::vector<std::string> all = description_.warnings;
-    all.insert(all.end(), warnings_.begin(), warnings_.end());
+    // What is said of a file is said once, however many shapes use it.
+    std::unordered_set<std::string_view> said;
+    for (const std::string& warning : warnings_)
+      if (said.insert(warning).second) all.push_back(warning);
     for (const UnreadKey& key : unread_) all.push_back(key.message);
     return all;
   }

@@ -124,6 +124,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const std::filesystem::path file = existing_file(parameters, "filename", directory, "a mesh file");
     Mesh mesh = (is_obj ? read_obj : read_ply)(file, world_from_object(parameters));
     const std::string name = label(object, file.stem().string());
+    warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(
           object.location, mesh.dropped_triangles == 1

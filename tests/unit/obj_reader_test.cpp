@@ -62,6 +62,31 @@ TEST(ObjReader, polygon_is_a_fan) {
   EXPECT_THAT(mesh.indices, ElementsAre(0, 1, 2, 0, 2, 3, 0, 3, 4));
 }
 
+TEST(ObjReader, concave_face_is_filled_not_its_hull) {
+  const auto mesh = read_text("v 0 1 0\nv 2 0 0\nv 0 3 0\nv -2 0 0\nf 1 2 3 4\nf 2 3 4 1\n");
+  for (std::size_t t = 0; t < 4; ++t) EXPECT_FLOAT_EQ(geometric_normal(mesh, t).z, 4) << t;
+  EXPECT_THAT(mesh.warnings, IsEmpty());
+}
+
+TEST(ObjReader, faces_that_cross_themselves_are_told_with_the_first) {
+  EXPECT_THAT(
+      read_text(square + std::string("f 1 2 3 4\nf 1 3 2 4\nf 2 4 3 1\n")).warnings,
+      ElementsAre(AllOf(HasSubstr(".obj:6:1: 2 polygons cross themselves, or are folded; the first"))));
+  EXPECT_THAT(read_text("v 0 0 0\nv 2 0 0\nv 3 1 2\nv 1 2 -1\nv -1 1 0\nf 1 2 3 4 5\n").warnings,
+              ElementsAre(HasSubstr(".obj:6:1: the corners of this polygon lie far from one plane")));
+}
+
+TEST(ObjReader, materials_passed_over_are_told_once) {
+  const std::string text =
+      "mtllib box.mtl\n" + std::string(square) + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n";
+  EXPECT_THAT(read_text(text).warnings,
+              ElementsAre(HasSubstr(".obj:1:1: the materials of this file are passed over")));
+}
+
+TEST(ObjReader, numbers_too_small_for_a_double_are_zero) {
+  EXPECT_EQ(corner(read_text("v 1e-400 -1e-9999 4e-320\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), 0), (Vec3f{0, 0, 0}));
+}
+
 TEST(ObjReader, negative_indices_count_back_from_the_face) {
   const auto mesh = read_text(square + std::string("f -4 -3 -2\nv 9 9 9\nf -5 -4 -1\n"));
   EXPECT_EQ(corner(mesh, 0), (Vec3f{0, 0, 0}));
