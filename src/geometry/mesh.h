@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,8 @@ struct Mesh {
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };
+
+/// A file that has been read once: its mesh under any world_from_object.
+using MeshFile = std::function<Mesh(const Transform& world_from_object)>;
 
 }  // namespace etendue

@@ -4,6 +4,7 @@
 #include "geometry/mesh_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <utility>
 
@@ -47,14 +48,37 @@ void VertexTable::grow() {
     if (vertex != Corner::none) slots_[find_slot(corners_[vertex])] = vertex;
 }
 
-MeshBuilder::MeshBuilder(std::string name, MeshParts parts, bool has_uvs, bool has_normals, Errors errors)
-    : parts_(std::move(parts)),
+MeshParts in_world(const ObjectParts& parts, const Transform& world_from_object) {
+  MeshParts world;
+  world.uvs = parts.uvs;
+  world.positions.reserve(parts.positions.size());
+  world.normals.reserve(parts.normals.size());
+  for (const Vec3<double>& position : parts.positions) {
+    const auto p = transform_point(world_from_object, position);
+    world.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+  }
+  for (const Vec3<double>& normal : parts.normals)
+    world.normals.push_back(unit_or_zero(transform_normal(world_from_object, normal)));
+  return world;
+}
+
+MeshBuilder::MeshBuilder(std::string name, const ObjectParts& parts, const Transform& world_from_object,
+                         bool has_uvs, bool has_normals, Errors errors)
+    : parts_(in_world(parts, world_from_object)),
       has_uvs_(has_uvs),
       has_normals_(has_normals),
       errors_(std::move(errors)),
       vertices_(parts_.positions.size()) {
   mesh_.name = std::move(name);
   mesh_.positions.reserve(parts_.positions.size());
+  for (std::size_t i = 0; i < parts_.positions.size(); ++i) {
+    const Vec3f& p = parts_.positions[i];
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+    const Vec3<double> wide = transform_point(world_from_object, parts.positions[i]);
+    const double misfit = !std::isfinite(p.x) ? wide.x : !std::isfinite(p.y) ? wide.y : wide.z;
+    throw errors_.at_position(i, fmt::format("{:g} does not fit a float", misfit),
+                              "expected coordinates, in world space, below 3e38");
+  }
 }
 
 void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {

@@ -22,12 +22,21 @@ struct Corner {
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
-/// What a file lists, positions and normals already in world space; a normal without direction is zero.
+/// What a file lists, in the space of the object.
+struct ObjectParts {
+  std::vector<Vec3<double>> positions, normals;
+  std::vector<Vec2f> uvs;
+};
+
+/// The same in world space; a normal without direction is zero.
 struct MeshParts {
   std::vector<Vec3f> positions;
   std::vector<Vec2f> uvs;
   std::vector<Vec3f> normals;
 };
+
+/// Positions that do not fit a float are infinite.
+MeshParts in_world(const ObjectParts& parts, const Transform& world_from_object);
 
 /// Gives each distinct corner a vertex of the mesh. Most positions have one uv and one normal, so the first
 /// vertex of each position is found by index; only further ones go through a hash table (open addressing,
@@ -65,16 +74,17 @@ class VertexTable {
 ///   longest edge, where the normal would be rounding error in float, or an area below 5.4e-20 m^2.
 class MeshBuilder {
  public:
-  /// Makes the error of a face, or of a normal, by its number in the file. The problem of a normal is what
-  /// is said of it: "has no direction".
+  /// Makes the error of a face, a position or a normal, by its number in the file. The problem of a normal
+  /// is what is said of it: "has no direction".
   using ErrorAt =
       std::function<InputError(std::size_t index, std::string_view problem, std::string_view hint)>;
   struct Errors {
-    ErrorAt at_face, at_normal;
+    ErrorAt at_face, at_position, at_normal;
   };
 
-  /// \param name for messages: the file's path
-  MeshBuilder(std::string name, MeshParts parts, bool has_uvs, bool has_normals, Errors errors);
+  /// Throws for a position of `parts` that does not fit a float. \param name for messages: the file's path
+  MeshBuilder(std::string name, const ObjectParts& parts, const Transform& world_from_object, bool has_uvs,
+              bool has_normals, Errors errors);
 
   void reserve_triangles(std::size_t count) { mesh_.indices.reserve(3 * count); }
 

@@ -21,4 +21,8 @@ namespace etendue {
 /// zero and that a triangle uses.
 Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_object);
 
+/// The same in two steps, for a file that is used several times. What depends on the transform (normals
+/// without direction, triangles too large or without area) is thrown where the mesh is made.
+MeshFile read_obj_file(const std::filesystem::path& file);
+
 }  // namespace etendue

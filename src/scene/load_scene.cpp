@@ -56,7 +56,8 @@ std::string text_of(const Object& object) {
 /// Collects the parts of a scene as the file lists them.
 class Loader {
  public:
-  Loader(const SceneDesc& description, Edges edges) : description_(description), edges_(edges) {}
+  Loader(const SceneDesc& description, Edges edges)
+      : description_(description), edges_(edges), meshes_(description.root) {}
 
   LoadedScene load() {
     const Clock::time_point start = Clock::now();
@@ -179,7 +180,8 @@ class Loader {
     } else if (light) {
       add_light(*light, description_.directory, lights_, unread_);
     }
-    add_shape_geometry(object, description_.directory, ids, radiance, geometry_, lights_, unread_, warnings_);
+    add_shape_geometry(object, description_.directory, ids, radiance, meshes_, geometry_, lights_, unread_,
+                       warnings_);
     if (is_twosided) lights_.set_twosided(ids.light);
     if (has_texture(materials_[std::size_t(ids.material)]) && geometry_.triangles.back() > 0 &&
         geometry_.has_uvs.back() == 0)
@@ -220,6 +222,7 @@ class Loader {
 
   const SceneDesc& description_;
   Edges edges_;
+  MeshFiles meshes_;
   std::optional<Camera> camera_;
   std::optional<PixelFilter> filter_;
   std::optional<Object> integrator_;
