@@ -21,6 +21,8 @@ struct Mesh {
   std::vector<std::uint32_t> indices;  ///< Three per triangle.
   std::size_t dropped_triangles = 0;   ///< Left out for having no area; worth a warning.
   std::vector<std::string> warnings;   ///< What is odd about the file; complete messages.
+  std::size_t materials = 0;           ///< That its file gives to parts of it.
+  std::string materials_passed_over;   ///< The complete message, where there are any.
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
-#include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -28,7 +28,8 @@ struct Face {
 struct Statements : ObjectParts {
   std::vector<Face> faces;
   std::vector<Corner> corners;
-  std::optional<std::size_t> first_material;  ///< Where the first statement about materials stands.
+  std::set<std::string_view> materials;  ///< By their names.
+  std::size_t first_material = 0;        ///< Where the first is given.
 };
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
@@ -121,8 +122,8 @@ class Parser {
         read_uv();
       else if (cursor_.accept("f"))
         read_face(start);
-      else if (!read_.first_material && (cursor_.accept("usemtl") || cursor_.accept("mtllib")))
-        read_.first_material = start;
+      else if (cursor_.accept("usemtl"))
+        read_material(start);
       cursor_.skip_line();
     }
     const auto index_count = 3 * (read_.corners.size() - 2 * read_.faces.size());
@@ -185,6 +186,12 @@ class Parser {
     const auto start = cursor_.offset();
     const auto uv = read_numbers(what, count, 1);
     read_.uvs.push_back({narrow(uv.x, start, what, count), narrow(uv.y, start, what, count)});
+  }
+
+  void read_material(std::size_t start) {
+    cursor_.skip_blanks();
+    if (read_.materials.empty()) read_.first_material = start;
+    read_.materials.insert(cursor_.take_token());
   }
 
   void read_normal() { read_.normals.push_back(read_numbers("normal", read_.normals.size(), 3)); }
@@ -278,11 +285,14 @@ class Assembler {
       builder.add_face(
           f, std::span(read_.corners).subspan(first_corner(f), first_corner(f + 1) - first_corner(f)));
     Mesh mesh = std::move(builder).finish();
-    if (read_.first_material)
-      mesh.warnings.emplace_back(
-          error(*read_.first_material, "the materials of this file are passed over",
-                "all of the mesh has the bsdf and emitter that the scene file gives it")
-              .what());
+    mesh.materials = read_.materials.size();
+    if (mesh.materials > 0)
+      mesh.materials_passed_over =
+          error(
+              read_.first_material, "the materials of this file are passed over",
+              "all of the mesh has the bsdf and emitter that the scene file gives it; a mesh without bsdf is "
+              "diffuse grey")
+              .what();
     return mesh;
   }
 

@@ -8,8 +8,8 @@
 namespace etendue {
 
 /// Reads v, vt, vn and f (triangles, quads, larger polygons) and applies
-/// `world_from_object`. Other statements are skipped, those of materials with a
-/// warning; what follows x y z in a v must be numbers (weight,
+/// `world_from_object`. Other statements are skipped, and the materials of `usemtl`
+/// counted; what follows x y z in a v must be numbers (weight,
 /// colour) and is ignored. Negative indices count back from the last vertex before the face; positive ones
 /// may name a vertex that follows later in the file; vt and vn of 0 mean that there is none, as Cinema 4D
 /// writes them. Normals are transformed by the inverse transpose and renormalised. MeshBuilder has the rules

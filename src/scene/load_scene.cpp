@@ -57,7 +57,10 @@ std::string text_of(const Object& object) {
 class Loader {
  public:
   Loader(const SceneDesc& description, Edges edges)
-      : description_(description), edges_(edges), meshes_(description.root) {}
+      : description_(description),
+        edges_(edges),
+        meshes_(description.root),
+        textures_{description.directory} {}
 
   LoadedScene load() {
     const Clock::time_point start = Clock::now();
@@ -199,7 +202,7 @@ class Loader {
       return known->second;
     const auto id = std::int32_t(materials_.size());
     const std::size_t unread_before = unread_.size();
-    materials_.push_back(bsdf ? make_material(*bsdf, description_.directory, unread_) : Material{Diffuse{}});
+    materials_.push_back(bsdf ? make_material(*bsdf, textures_, unread_) : Material{Diffuse{}});
     if (unread_.size() == unread_before) material_ids_.emplace(description, id);
     return id;
   }
@@ -223,6 +226,7 @@ class Loader {
   const SceneDesc& description_;
   Edges edges_;
   MeshFiles meshes_;
+  TextureFiles textures_;
   std::optional<Camera> camera_;
   std::optional<PixelFilter> filter_;
   std::optional<Object> integrator_;

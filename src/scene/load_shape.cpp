@@ -125,6 +125,9 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     Mesh mesh =
         meshes.read(object, file, world_from_object(parameters), is_obj ? read_obj_file : read_ply_file);
     const std::string name = label(object, file.stem().string());
+    const bool has_bsdf = std::any_of(object.children.begin(), object.children.end(), is_bsdf);
+    // Of a single material nothing is lost where the scene file has its own.
+    if (mesh.materials > (has_bsdf ? 1 : 0)) warnings.push_back(mesh.materials_passed_over);
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(
