@@ -11,9 +11,8 @@ const std::vector<Plugin>& bsdf_plugins() {
   return plugins;
 }
 
-Material make_material(const Object& description, const std::filesystem::path& directory,
-                       std::vector<UnreadKey>& unread) {
-  if (description.type == diffuse_plugin.name) return make_diffuse(description, directory, unread);
+Material make_material(const Object& description, TextureFiles& files, std::vector<UnreadKey>& unread) {
+  if (description.type == diffuse_plugin.name) return make_diffuse(description, files, unread);
   if (description.type == phong_plugin.name) return make_phong(description, unread);
   if (description.type == mirror_plugin.name) return make_mirror(description, unread);
   if (description.type == dielectric_plugin.name) return make_dielectric(description, unread);

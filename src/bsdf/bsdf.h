@@ -57,10 +57,9 @@ static_assert(MaterialModel<Diffuse> && MaterialModel<Phong> && MaterialModel<Mi
 
 const std::vector<Plugin>& bsdf_plugins();
 
-/// Image files are looked for in `directory`. Throws InputError for an unknown model (with the known ones) or
+/// Image files are read through `files`. Throws InputError for an unknown model (with the known ones) or
 /// a parameter out of range.
-Material make_material(const Object& description, const std::filesystem::path& directory,
-                       std::vector<UnreadKey>& unread);
+Material make_material(const Object& description, TextureFiles& files, std::vector<UnreadKey>& unread);
 
 /// The materials of a scene, by id.
 class Materials {

@@ -9,10 +9,9 @@ const Plugin diffuse_plugin{
     {{"albedo", Parameter::Type::color, "0.5", "", "Fraction of the light that is reflected", false, true}},
     {}};
 
-Diffuse make_diffuse(const Object& description, const std::filesystem::path& directory,
-                     std::vector<UnreadKey>& unread) {
+Diffuse make_diffuse(const Object& description, TextureFiles& files, std::vector<UnreadKey>& unread) {
   const Parameters parameters(description, diffuse_plugin, unread);
-  return {read_color_texture(parameters, "albedo", directory, unread)};
+  return {read_color_texture(parameters, "albedo", files, unread)};
 }
 
 }  // namespace etendue

@@ -41,7 +41,6 @@ struct Diffuse {
 };
 
 extern const Plugin diffuse_plugin;
-Diffuse make_diffuse(const Object& description, const std::filesystem::path& directory,
-                     std::vector<UnreadKey>& unread);
+Diffuse make_diffuse(const Object& description, TextureFiles& files, std::vector<UnreadKey>& unread);
 
 }  // namespace etendue

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,14 @@ struct Mesh {
   std::vector<Vec2f> uvs;              ///< One per position, or empty.
   std::vector<std::uint32_t> indices;  ///< Three per triangle.
   std::size_t dropped_triangles = 0;   ///< Left out for having no area; worth a warning.
+  std::vector<std::string> warnings;   ///< What is odd about the file; complete messages.
+  std::size_t materials = 0;           ///< That its file gives to parts of it.
+  std::string materials_passed_over;   ///< The complete message, where there are any.
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };
+
+/// A file that has been read once: its mesh under any world_from_object.
+using MeshFile = std::function<Mesh(const Transform& world_from_object)>;
 
 }  // namespace etendue

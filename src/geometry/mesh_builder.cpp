@@ -4,6 +4,8 @@
 #include "geometry/mesh_text.h"
 
 #include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
 #include <utility>
 
 namespace etendue {
@@ -46,30 +48,71 @@ void VertexTable::grow() {
     if (vertex != Corner::none) slots_[find_slot(corners_[vertex])] = vertex;
 }
 
-MeshBuilder::MeshBuilder(std::string name, MeshParts parts, bool has_uvs, bool has_normals, Errors errors)
-    : parts_(std::move(parts)),
+MeshParts in_world(const ObjectParts& parts, const Transform& world_from_object) {
+  MeshParts world;
+  world.uvs = parts.uvs;
+  world.positions.reserve(parts.positions.size());
+  world.normals.reserve(parts.normals.size());
+  for (const Vec3<double>& position : parts.positions) {
+    const auto p = transform_point(world_from_object, position);
+    world.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+  }
+  for (const Vec3<double>& normal : parts.normals)
+    world.normals.push_back(unit_or_zero(transform_normal(world_from_object, normal)));
+  return world;
+}
+
+MeshBuilder::MeshBuilder(std::string name, const ObjectParts& parts, const Transform& world_from_object,
+                         bool has_uvs, bool has_normals, Errors errors)
+    : parts_(in_world(parts, world_from_object)),
       has_uvs_(has_uvs),
       has_normals_(has_normals),
       errors_(std::move(errors)),
       vertices_(parts_.positions.size()) {
   mesh_.name = std::move(name);
   mesh_.positions.reserve(parts_.positions.size());
+  for (std::size_t i = 0; i < parts_.positions.size(); ++i) {
+    const Vec3f& p = parts_.positions[i];
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+    const Vec3<double> wide = transform_point(world_from_object, parts.positions[i]);
+    const double misfit = !std::isfinite(p.x) ? wide.x : !std::isfinite(p.y) ? wide.y : wide.z;
+    throw errors_.at_position(i, fmt::format("{:g} does not fit a float", misfit),
+                              "expected coordinates, in world space, below 3e38");
+  }
 }
 
 void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {
-  if (c.size() == 4) {
-    add_triangle(face, {c[0], c[1], c[2]});
-    add_triangle(face, {c[3], c[0], c[2]});
-  } else {
-    for (std::size_t k = 1; k + 1 < c.size(); ++k) add_triangle(face, {c[0], c[k], c[k + 1]});
-  }
+  if (c.size() == 3) return add_triangle(face, {c[0], c[1], c[2]});
+  polygon_.clear();
+  for (const Corner& corner : c) polygon_.push_back(to_double(parts_.positions[corner.position]));
+  triangulate(polygon_, triangles_);
+  for (const auto& [i, j, k] : triangles_.corners) add_triangle(face, {c[i], c[j], c[k]});
+  if (!triangles_.is_simple)
+    crossing_.add(face);
+  else if (!triangles_.is_flat)
+    bent_.add(face);
 }
 
 Mesh MeshBuilder::finish() && {
   if (mesh_.indices.empty())
     throw errors_.at_face(0, "no triangle has an area",
                           "the mesh, or the transform it is given, is flat; check its scale");
+  warn(crossing_, "this polygon crosses itself, or is folded", "{} polygons cross themselves, or are folded",
+       "it has no inside to fill with triangles, and gets a fan from its first corner; cut it in two");
+  warn(bent_, "the corners of this polygon lie far from one plane",
+       "the corners of {} polygons lie far from one plane",
+       "it has no shape of its own, and gets triangles by how it looks from the front; cut it in two");
   return std::move(mesh_);
+}
+
+/// \param problems where there are several; their number for {}
+void MeshBuilder::warn(const OddFaces& faces, std::string_view problem, std::string_view problems,
+                       std::string_view hint) {
+  if (faces.count == 0) return;
+  const std::string said = faces.count == 1
+                               ? std::string(problem)
+                               : fmt::format(fmt::runtime(problems), faces.count) + "; the first";
+  mesh_.warnings.emplace_back(errors_.at_face(faces.first, said, hint).what());
 }
 
 void MeshBuilder::add_triangle(std::size_t face, std::array<Corner, 3> corners) {

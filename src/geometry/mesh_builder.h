@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "geometry/mesh.h"
+#include "geometry/polygon.h"
 
 #include <array>
 #include <cstdint>
@@ -21,12 +22,21 @@ struct Corner {
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
-/// What a file lists, positions and normals already in world space; a normal without direction is zero.
+/// What a file lists, in the space of the object.
+struct ObjectParts {
+  std::vector<Vec3<double>> positions, normals;
+  std::vector<Vec2f> uvs;
+};
+
+/// The same in world space; a normal without direction is zero.
 struct MeshParts {
   std::vector<Vec3f> positions;
   std::vector<Vec2f> uvs;
   std::vector<Vec3f> normals;
 };
+
+/// Positions that do not fit a float are infinite.
+MeshParts in_world(const ObjectParts& parts, const Transform& world_from_object);
 
 /// Gives each distinct corner a vertex of the mesh. Most positions have one uv and one normal, so the first
 /// vertex of each position is found by index; only further ones go through a hash table (open addressing,
@@ -53,7 +63,8 @@ class VertexTable {
 /// Vertices appear in the order of their first use; a position used with several uvs or normals becomes
 /// several vertices.
 ///
-/// - A quad is split (0,1,2),(3,0,2), as in Nori; a larger polygon is a fan.
+/// - What has more corners than three is cut into triangles as triangulate() says; polygons that cross
+///   themselves, or are far from flat, are warned of, with the first of them.
 /// - If any corner has a normal, a triangle that lacks one at a corner is flat: its corners get its geometric
 ///   normal. Likewise uvs: (0, 0) where a corner has none.
 /// - With vertex normals, a triangle whose winding points against the sum of its three normals gets its
@@ -63,16 +74,17 @@ class VertexTable {
 ///   longest edge, where the normal would be rounding error in float, or an area below 5.4e-20 m^2.
 class MeshBuilder {
  public:
-  /// Makes the error of a face, or of a normal, by its number in the file. The problem of a normal is what
-  /// is said of it: "has no direction".
+  /// Makes the error of a face, a position or a normal, by its number in the file. The problem of a normal
+  /// is what is said of it: "has no direction".
   using ErrorAt =
       std::function<InputError(std::size_t index, std::string_view problem, std::string_view hint)>;
   struct Errors {
-    ErrorAt at_face, at_normal;
+    ErrorAt at_face, at_position, at_normal;
   };
 
-  /// \param name for messages: the file's path
-  MeshBuilder(std::string name, MeshParts parts, bool has_uvs, bool has_normals, Errors errors);
+  /// Throws for a position of `parts` that does not fit a float. \param name for messages: the file's path
+  MeshBuilder(std::string name, const ObjectParts& parts, const Transform& world_from_object, bool has_uvs,
+              bool has_normals, Errors errors);
 
   void reserve_triangles(std::size_t count) { mesh_.indices.reserve(3 * count); }
 
@@ -85,6 +97,15 @@ class MeshBuilder {
   Mesh finish() &&;
 
  private:
+  /// Faces of one fault: the first of them, and how many.
+  struct OddFaces {
+    std::size_t first, count = 0;
+    void add(std::size_t face) {
+      if (count++ == 0) first = face;
+    }
+  };
+  void warn(const OddFaces& faces, std::string_view problem, std::string_view problems,
+            std::string_view hint);
   void add_triangle(std::size_t face, std::array<Corner, 3> corners);
   void give_normals(std::array<Corner, 3>& corners, const Vec3<double>& double_area_normal);
   void add_vertex(const Corner& corner);
@@ -93,6 +114,9 @@ class MeshBuilder {
   bool has_uvs_, has_normals_;
   Errors errors_;
   VertexTable vertices_;
+  PolygonTriangles triangles_;
+  std::vector<Vec3<double>> polygon_;
+  OddFaces crossing_, bent_;
   Mesh mesh_;
 };
 

@@ -1,7 +1,8 @@
 #include "geometry/mesh_text.h"
 
+#include "base/number_text.h"
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -43,7 +44,7 @@ Parsed parse(std::string_view token) {
   if (has_plus) token.remove_prefix(1);
   if (has_plus && token.starts_with('-')) return parsed;
   const char* end = token.data() + token.size();
-  const auto [stop, error] = std::from_chars(token.data(), end, parsed.value);
+  const auto [stop, error] = number_from_chars(token.data(), end, parsed.value);
   parsed.error = error;
   parsed.is_whole_token = stop == end;
   return parsed;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -23,17 +24,12 @@ struct Face {
   std::size_t first_corner;
 };
 
-/// A normal without direction: an error only where a triangle uses it.
-struct ZeroNormal {
-  std::uint32_t index;
-  std::size_t offset;
-};
-
-/// The statements of a file, positions and normals already in world space.
-struct Statements : MeshParts {
-  std::vector<ZeroNormal> zero_normals;
+/// The statements of a file.
+struct Statements : ObjectParts {
   std::vector<Face> faces;
   std::vector<Corner> corners;
+  std::set<std::string_view> materials;  ///< By their names.
+  std::size_t first_material = 0;        ///< Where the first is given.
 };
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
@@ -110,8 +106,8 @@ class Cursor {
 
 class Parser {
  public:
-  Parser(std::shared_ptr<const SourceFile> source, const Transform& world_from_object)
-      : source_(std::move(source)), world_from_object_(world_from_object), cursor_(source_->text, 0) {}
+  explicit Parser(std::shared_ptr<const SourceFile> source)
+      : source_(std::move(source)), cursor_(source_->text, 0) {}
 
   Statements parse() {
     cursor_.accept('\xEF') && cursor_.accept('\xBB') && cursor_.accept('\xBF');  // the byte order mark
@@ -121,11 +117,13 @@ class Parser {
       if (cursor_.accept("v"))
         read_position();
       else if (cursor_.accept("vn"))
-        read_normal(start);
+        read_normal();
       else if (cursor_.accept("vt"))
         read_uv();
       else if (cursor_.accept("f"))
         read_face(start);
+      else if (cursor_.accept("usemtl"))
+        read_material(start);
       cursor_.skip_line();
     }
     const auto index_count = 3 * (read_.corners.size() - 2 * read_.faces.size());
@@ -179,15 +177,7 @@ class Parser {
     return {numbers[0], numbers[1], numbers[2]};
   }
 
-  void read_position() {
-    constexpr std::string_view what = "vertex";
-    const auto count = read_.positions.size();
-    cursor_.skip_blanks();
-    const auto start = cursor_.offset();
-    const auto p = transform_point(world_from_object_, read_numbers(what, count, 3));
-    read_.positions.push_back(
-        {narrow(p.x, start, what, count), narrow(p.y, start, what, count), narrow(p.z, start, what, count)});
-  }
+  void read_position() { read_.positions.push_back(read_numbers("vertex", read_.positions.size(), 3)); }
 
   void read_uv() {
     constexpr std::string_view what = "texture vertex";
@@ -198,13 +188,13 @@ class Parser {
     read_.uvs.push_back({narrow(uv.x, start, what, count), narrow(uv.y, start, what, count)});
   }
 
-  void read_normal(std::size_t start) {
-    const auto count = read_.normals.size();
-    const auto object_normal = read_numbers("normal", count, 3);
-    const auto normal = unit_or_zero(transform_normal(world_from_object_, object_normal));
-    if (normal == Vec3f{0, 0, 0}) read_.zero_normals.push_back({static_cast<std::uint32_t>(count), start});
-    read_.normals.push_back(normal);
+  void read_material(std::size_t start) {
+    cursor_.skip_blanks();
+    if (read_.materials.empty()) read_.first_material = start;
+    read_.materials.insert(cursor_.take_token());
   }
+
+  void read_normal() { read_.normals.push_back(read_numbers("normal", read_.normals.size(), 3)); }
 
   /// What index 0 means: Cinema 4D writes it for a uv or normal that is not there.
   enum class Zero { is_wrong, is_none };
@@ -258,7 +248,6 @@ class Parser {
   }
 
   std::shared_ptr<const SourceFile> source_;
-  Transform world_from_object_;
   Cursor cursor_;
   Statements read_;
 };
@@ -267,30 +256,44 @@ class Parser {
 class Assembler {
  public:
   Assembler(std::shared_ptr<const SourceFile> source, Statements read)
-      : source_(std::move(source)), read_(std::move(read)) {}
-
-  Mesh build() {
-    bool has_uvs = false, has_normals = false;
+      : source_(std::move(source)), read_(std::move(read)) {
     for (const auto& corner : read_.corners) {
-      has_uvs |= corner.uv != none;
-      has_normals |= corner.normal != none;
+      has_uvs_ |= corner.uv != none;
+      has_normals_ |= corner.normal != none;
     }
     for (std::size_t f = 0; f < read_.faces.size(); ++f) check_face(f);
+  }
+
+  Mesh build(const Transform& world_from_object) const {
     const auto fail_at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
       return error(read_.faces[face].offset, problem, hint);
     };
-    const auto fail_at_normal = [this](std::size_t index, std::string_view problem, std::string_view hint) {
-      const auto zero = std::find_if(read_.zero_normals.begin(), read_.zero_normals.end(),
-                                     [&](const ZeroNormal& n) { return n.index == index; });
-      return error(zero->offset, fmt::format("normal {} {}", index + 1, problem), hint);
+    const auto fail_at_position = [this](std::size_t index, std::string_view problem, std::string_view hint) {
+      Cursor cursor = find_statement("v", index);
+      cursor.accept("v");
+      cursor.skip_blanks();
+      return error(cursor.offset(), fmt::format("vertex {}: {}", index + 1, problem), hint);
     };
-    MeshBuilder builder(source_->path, MeshParts(std::move(static_cast<MeshParts&>(read_))), has_uvs,
-                        has_normals, {fail_at_face, fail_at_normal});
+    const auto fail_at_normal = [this](std::size_t index, std::string_view problem, std::string_view hint) {
+      return error(find_statement("vn", index).offset(), fmt::format("normal {} {}", index + 1, problem),
+                   hint);
+    };
+    MeshBuilder builder(source_->path, read_, world_from_object, has_uvs_, has_normals_,
+                        {fail_at_face, fail_at_position, fail_at_normal});
     builder.reserve_triangles(read_.corners.size() - 2 * read_.faces.size());
     for (std::size_t f = 0; f < read_.faces.size(); ++f)
       builder.add_face(
           f, std::span(read_.corners).subspan(first_corner(f), first_corner(f + 1) - first_corner(f)));
-    return std::move(builder).finish();
+    Mesh mesh = std::move(builder).finish();
+    mesh.materials = read_.materials.size();
+    if (mesh.materials > 0)
+      mesh.materials_passed_over =
+          error(
+              read_.first_material, "the materials of this file are passed over",
+              "all of the mesh has the bsdf and emitter that the scene file gives it; a mesh without bsdf is "
+              "diffuse grey")
+              .what();
+    return mesh;
   }
 
  private:
@@ -298,6 +301,19 @@ class Assembler {
     auto end = source_->text.find_first_of("\r\n", offset);
     if (end == std::string::npos) end = source_->text.size();
     return InputError(Location{source_, offset, end - offset}, problem, hint);
+  }
+
+  /// Number `index`, from 0, of the statements that begin with `word`; no place is kept for each.
+  Cursor find_statement(std::string_view word, std::size_t index) const {
+    for (Cursor cursor(source_->text, 0);; cursor.skip_line()) {
+      cursor.skip_blanks();
+      Cursor inside = cursor;
+      if (!inside.accept(word)) continue;
+      if (index-- == 0) return cursor;
+      // Past lines that continue it.
+      for (inside.skip_blanks(); !inside.at_statement_end(); inside.skip_blanks()) inside.take_token();
+      cursor = inside;
+    }
   }
 
   std::size_t first_corner(std::size_t face) const {
@@ -331,19 +347,25 @@ class Assembler {
 
   std::shared_ptr<const SourceFile> source_;
   Statements read_;
+  bool has_uvs_ = false, has_normals_ = false;
 };
 
 }  // namespace
 
-Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_object) {
+MeshFile read_obj_file(const std::filesystem::path& file) {
   const auto source = read_mesh_file(file, "an OBJ mesh");
   if (source->text.empty())
     throw InputError(Location{source}, "the file is empty", "expected an OBJ mesh: v and f statements");
-  auto read = Parser(source, world_from_object).parse();
+  auto read = Parser(source).parse();
   if (read.faces.empty())
     throw InputError(Location{source}, "no face",
                      "expected an OBJ mesh with f statements; points and lines alone cannot be rendered");
-  return Assembler(source, std::move(read)).build();
+  return [all = std::make_shared<const Assembler>(source, std::move(read))](
+             const Transform& world_from_object) { return all->build(world_from_object); };
+}
+
+Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_object) {
+  return read_obj_file(file)(world_from_object);
 }
 
 }  // namespace etendue

@@ -297,9 +297,8 @@ std::size_t index_list_of(const PlyElement& face) {
 
 class PlyReader {
  public:
-  PlyReader(std::shared_ptr<const SourceFile> source, const Transform& world_from_object)
+  explicit PlyReader(std::shared_ptr<const SourceFile> source)
       : source_(std::move(source)),
-        world_from_object_(world_from_object),
         header_(read_ply_header(source_)),
         vertex_(header_.find("vertex")),
         face_(header_.find("face")) {
@@ -318,7 +317,7 @@ class PlyReader {
       throw InputError(vertex_->location, "more than 4294967294 vertices", "split the mesh");
   }
 
-  Mesh read() {
+  void read() {
     switch (header_.format) {
       case PlyFormat::ascii:
         return read_body<TextRows>();
@@ -327,12 +326,39 @@ class PlyReader {
       case PlyFormat::big_endian:
         return read_body<BinaryRows<std::endian::big>>();
     }
-    return {};
+  }
+
+  Mesh build(const Transform& world_from_object) const {
+    const auto at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
+      return error(*face_, faces_offset_, face, problem, hint);
+    };
+    const auto at_normal = [this](std::size_t normal, std::string_view problem, std::string_view hint) {
+      return error(*vertex_, vertices_offset_, normal, fmt::format("its normal {}", problem), hint);
+    };
+    const auto at_position = [this](std::size_t row, std::string_view problem, std::string_view hint) {
+      return error(*vertex_, vertices_offset_, row, problem, hint);
+    };
+    MeshBuilder builder(source_->path, parts_, world_from_object, layout_.has_uvs, layout_.has_normals,
+                        {at_face, at_position, at_normal});
+    builder.reserve_triangles(corners_.size() - 2 * face_sizes_.size());
+    std::vector<Corner> face;
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < face_sizes_.size(); ++f) {
+      face.clear();
+      for (std::size_t k = 0; k < face_sizes_[f]; ++k) {
+        const std::uint32_t vertex = corners_[first + k];
+        face.push_back(
+            {vertex, layout_.has_uvs ? vertex : Corner::none, layout_.has_normals ? vertex : Corner::none});
+      }
+      builder.add_face(f, face);
+      first += face_sizes_[f];
+    }
+    return std::move(builder).finish();
   }
 
  private:
   template <class Rows>
-  Mesh read_body() {
+  void read_body() {
     Rows rows(source_, header_.body_offset);
     for (const PlyElement& element : header_.elements) {
       if (&element == vertex_) {
@@ -346,7 +372,6 @@ class PlyReader {
       }
     }
     rows.expect_end();
-    return build();
   }
 
   template <class Rows>
@@ -369,11 +394,8 @@ class PlyReader {
           rows.skip_scalar(property.type);
       }
       rows.end_row();
-      const auto p = transform_point(world_from_object_, {value[x], value[y], value[z]});
-      parts_.positions.push_back({narrow(p.x, row), narrow(p.y, row), narrow(p.z, row)});
-      if (layout_.has_normals)
-        parts_.normals.push_back(
-            unit_or_zero(transform_normal(world_from_object_, {value[nx], value[ny], value[nz]})));
+      parts_.positions.push_back({value[x], value[y], value[z]});
+      if (layout_.has_normals) parts_.normals.push_back({value[nx], value[ny], value[nz]});
       if (layout_.has_uvs) parts_.uvs.push_back({narrow(value[u], row), narrow(value[v], row)});
     }
   }
@@ -428,31 +450,6 @@ class PlyReader {
     face_sizes_.push_back(static_cast<std::uint32_t>(length));
   }
 
-  Mesh build() {
-    const auto at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
-      return error(*face_, faces_offset_, face, problem, hint);
-    };
-    const auto at_normal = [this](std::size_t normal, std::string_view problem, std::string_view hint) {
-      return error(*vertex_, vertices_offset_, normal, fmt::format("its normal {}", problem), hint);
-    };
-    MeshBuilder builder(source_->path, std::move(parts_), layout_.has_uvs, layout_.has_normals,
-                        {at_face, at_normal});
-    builder.reserve_triangles(corners_.size() - 2 * face_sizes_.size());
-    std::vector<Corner> face;
-    std::size_t first = 0;
-    for (std::size_t f = 0; f < face_sizes_.size(); ++f) {
-      face.clear();
-      for (std::size_t k = 0; k < face_sizes_[f]; ++k) {
-        const std::uint32_t vertex = corners_[first + k];
-        face.push_back(
-            {vertex, layout_.has_uvs ? vertex : Corner::none, layout_.has_normals ? vertex : Corner::none});
-      }
-      builder.add_face(f, face);
-      first += face_sizes_[f];
-    }
-    return std::move(builder).finish();
-  }
-
   /// With the line, which is looked for anew, where the body is text; else with the row's number.
   InputError error(const PlyElement& element, std::size_t offset, std::uint64_t row, std::string_view problem,
                    std::string_view hint) const {
@@ -468,22 +465,27 @@ class PlyReader {
   }
 
   std::shared_ptr<const SourceFile> source_;
-  Transform world_from_object_;
   PlyHeader header_;
   const PlyElement *vertex_, *face_;
   VertexLayout layout_;
   std::size_t index_list_ = 0;
   std::size_t vertices_offset_ = 0, faces_offset_ = 0;
-  MeshParts parts_;
+  ObjectParts parts_;
   std::vector<std::uint32_t> corners_, face_sizes_;
 };
 
 }  // namespace
 
-Mesh read_ply(const std::filesystem::path& file, const Transform& world_from_object) {
+MeshFile read_ply_file(const std::filesystem::path& file) {
   const auto source = read_mesh_file(file, "a PLY mesh");
   if (source->text.empty()) throw InputError(Location{source}, "the file is empty", "expected a PLY mesh");
-  return PlyReader(source, world_from_object).read();
+  const auto reader = std::make_shared<PlyReader>(source);
+  reader->read();
+  return [reader](const Transform& world_from_object) { return reader->build(world_from_object); };
+}
+
+Mesh read_ply(const std::filesystem::path& file, const Transform& world_from_object) {
+  return read_ply_file(file)(world_from_object);
 }
 
 }  // namespace etendue

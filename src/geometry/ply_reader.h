@@ -25,4 +25,8 @@ namespace etendue {
 /// the file holds, never what it claims.
 Mesh read_ply(const std::filesystem::path& file, const Transform& world_from_object);
 
+/// The same in two steps, for a file that is used several times. What depends on the transform is thrown
+/// where the mesh is made.
+MeshFile read_ply_file(const std::filesystem::path& file);
+
 }  // namespace etendue

@@ -236,7 +236,8 @@ void run_chi2test(TestRun& run) {
                         .detail = fmt::format("direction {}", direction + 1)};
       run.run_case(result, [&](CaseResult& measured) {
         std::vector<UnreadKey> unread_of_bsdf;
-        const Material material = make_material(bsdf, run.test.directory, unread_of_bsdf);
+        TextureFiles textures{run.test.directory};
+        const Material material = make_material(bsdf, textures, unread_of_bsdf);
         if (direction == 0) run.warn(unread_of_bsdf);
         const Vec3f wo = random_viewer(rules, RandomSquares(SamplerKind::independent, hash64(seed))[0]);
         std::visit(

@@ -122,7 +122,8 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
                     .is_reference_estimated = true};
   run.run_case(result, [&](CaseResult& measured) {
     std::vector<UnreadKey> unread;
-    const Material material = make_material(bsdf, run.test.directory, unread);
+    TextureFiles textures{run.test.directory};
+    const Material material = make_material(bsdf, textures, unread);
     run.warn(unread);
     const double angle = angle_deg * std::numbers::pi / 180;
     const Vec3f wo{float(std::sin(angle)), 0, float(std::cos(angle))};

@@ -1,11 +1,10 @@
 #include "render/isa.h"
 
 #include "base/error.h"
+#include "base/module.h"
 #include "render/kernel.h"
 
 #include <array>
-#include <dlfcn.h>
-#include <filesystem>
 #include <fmt/format.h>
 #include <mutex>
 #include <string>
@@ -44,22 +43,8 @@ bool has_isa(Isa isa) {
   return false;
 }
 
-/// The folder that holds this library, and the modules beside it.
-std::filesystem::path library_folder() {
-  Dl_info info;
-  if (!dladdr(reinterpret_cast<const void*>(&isa_name), &info))
-    throw InputError("cannot find the folder of the Etendue library");
-  return std::filesystem::path(info.dli_fname).parent_path();
-}
-
 const Kernel* load_kernel(Isa isa) {
-  const std::filesystem::path file = library_folder() / fmt::format("libetendue_kernel_{}.so", isa_name(isa));
-  void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!module)
-    throw InputError(fmt::format("cannot load the kernel for '{}': {}\n  build the target etendue_kernel",
-                                 isa_name(isa), dlerror()));
-  void* entry = dlsym(module, "etendue_kernel");
-  if (!entry) throw InputError(fmt::format("{} is not a kernel: {}", file.string(), dlerror()));
+  void* entry = module_entry(fmt::format("kernel_{}", isa_name(isa)), "etendue_kernel");
   return reinterpret_cast<const Kernel* (*)()>(entry)();
 }
 

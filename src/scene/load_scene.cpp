@@ -11,6 +11,7 @@
 #include <string>
 #include <type_traits>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace etendue {
@@ -55,7 +56,11 @@ std::string text_of(const Object& object) {
 /// Collects the parts of a scene as the file lists them.
 class Loader {
  public:
-  Loader(const SceneDesc& description, Edges edges) : description_(description), edges_(edges) {}
+  Loader(const SceneDesc& description, Edges edges)
+      : description_(description),
+        edges_(edges),
+        meshes_(description.root),
+        textures_{description.directory} {}
 
   LoadedScene load() {
     const Clock::time_point start = Clock::now();
@@ -178,7 +183,8 @@ class Loader {
     } else if (light) {
       add_light(*light, description_.directory, lights_, unread_);
     }
-    add_shape_geometry(object, description_.directory, ids, radiance, geometry_, lights_, unread_, warnings_);
+    add_shape_geometry(object, description_.directory, ids, radiance, meshes_, geometry_, lights_, unread_,
+                       warnings_);
     if (is_twosided) lights_.set_twosided(ids.light);
     if (has_texture(materials_[std::size_t(ids.material)]) && geometry_.triangles.back() > 0 &&
         geometry_.has_uvs.back() == 0)
@@ -196,7 +202,7 @@ class Loader {
       return known->second;
     const auto id = std::int32_t(materials_.size());
     const std::size_t unread_before = unread_.size();
-    materials_.push_back(bsdf ? make_material(*bsdf, description_.directory, unread_) : Material{Diffuse{}});
+    materials_.push_back(bsdf ? make_material(*bsdf, textures_, unread_) : Material{Diffuse{}});
     if (unread_.size() == unread_before) material_ids_.emplace(description, id);
     return id;
   }
@@ -209,13 +215,18 @@ class Loader {
 
   std::vector<std::string> warnings() const {
     std::vector<std::string> all = description_.warnings;
-    all.insert(all.end(), warnings_.begin(), warnings_.end());
+    // What is said of a file is said once, however many shapes use it.
+    std::unordered_set<std::string_view> said;
+    for (const std::string& warning : warnings_)
+      if (said.insert(warning).second) all.push_back(warning);
     for (const UnreadKey& key : unread_) all.push_back(key.message);
     return all;
   }
 
   const SceneDesc& description_;
   Edges edges_;
+  MeshFiles meshes_;
+  TextureFiles textures_;
   std::optional<Camera> camera_;
   std::optional<PixelFilter> filter_;
   std::optional<Object> integrator_;

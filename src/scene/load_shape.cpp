@@ -115,15 +115,20 @@ const std::vector<Plugin>& shape_plugins() {
 }
 
 void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
-                        const std::optional<Colorf>& radiance, Geometry& geometry, Lights& lights,
-                        std::vector<UnreadKey>& unread, std::vector<std::string>& warnings) {
+                        const std::optional<Colorf>& radiance, MeshFiles& meshes, Geometry& geometry,
+                        Lights& lights, std::vector<UnreadKey>& unread, std::vector<std::string>& warnings) {
   const std::string numbered = fmt::format("{} {}", object.type, geometry.count() + 1);
   if (object.type == obj_plugin.name || object.type == ply_plugin.name) {
     const bool is_obj = object.type == obj_plugin.name;
     const Parameters parameters(object, is_obj ? obj_plugin : ply_plugin, unread);
     const std::filesystem::path file = existing_file(parameters, "filename", directory, "a mesh file");
-    Mesh mesh = (is_obj ? read_obj : read_ply)(file, world_from_object(parameters));
+    Mesh mesh =
+        meshes.read(object, file, world_from_object(parameters), is_obj ? read_obj_file : read_ply_file);
     const std::string name = label(object, file.stem().string());
+    const bool has_bsdf = std::any_of(object.children.begin(), object.children.end(), is_bsdf);
+    // Of a single material nothing is lost where the scene file has its own.
+    if (mesh.materials > (has_bsdf ? 1 : 0)) warnings.push_back(mesh.materials_passed_over);
+    warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(
           object.location, mesh.dropped_triangles == 1

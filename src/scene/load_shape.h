@@ -3,6 +3,7 @@
 
 #include "geometry/geometry.h"
 #include "light/light.h"
+#include "scene/mesh_files.h"
 #include "scenefile/parameters.h"
 
 #include <filesystem>
@@ -20,7 +21,7 @@ const std::vector<Plugin>& shape_plugins();
 /// Throws InputError for an unknown shape, a file that cannot be read, a singular transform, a light without
 /// area.
 void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
-                        const std::optional<Colorf>& radiance, Geometry& geometry, Lights& lights,
-                        std::vector<UnreadKey>& unread, std::vector<std::string>& warnings);
+                        const std::optional<Colorf>& radiance, MeshFiles& meshes, Geometry& geometry,
+                        Lights& lights, std::vector<UnreadKey>& unread, std::vector<std::string>& warnings);
 
 }  // namespace etendue

@@ -1,5 +1,7 @@
 #include "scenefile/value_text.h"
 
+#include "base/number_text.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -48,8 +50,14 @@ T parse_token(std::string_view token, std::string_view text, const Location& whe
   std::string_view digits = token;
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   T number{};
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  const bool is_whole = end == digits.data() + digits.size();
+  const char* const last = digits.data() + digits.size();
+  const auto [end, error] = [&] {
+    if constexpr (std::is_same_v<T, double>)
+      return number_from_chars(digits.data(), last, number);
+    else
+      return std::from_chars(digits.data(), last, number);
+  }();
+  const bool is_whole = end == last;
   if (error == std::errc::result_out_of_range && is_whole)
     throw InputError(place_of(token, text, where), fmt::format("'{}' is out of range for {}", token, kind));
   if (error != std::errc() || !is_whole)

@@ -38,17 +38,11 @@ const Plugin image_texture_plugin{
      {"wrap", Type::text, "repeat", "", "Outside of the unit square: repeat, mirror or clamp"}},
     {}};
 
-ImageTexture make_image_texture(const Object& description, const std::filesystem::path& directory,
-                                std::vector<UnreadKey>& unread) {
-  const Parameters parameters(description, image_texture_plugin, unread);
-  using Wrap = ImageTexture::Wrap;
-  using Interpolation = ImageTexture::Interpolation;
+namespace {
+
+/// Its pixels and size only.
+ImageTexture read_pixels(const Parameters& parameters, const std::filesystem::path& directory) {
   ImageTexture texture;
-  texture.interpolation = choice<Interpolation, 2>(
-      parameters, "interpolation",
-      {{{"bilinear", Interpolation::bilinear}, {"nearest", Interpolation::nearest}}});
-  texture.wrap = choice<Wrap, 3>(
-      parameters, "wrap", {{{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}}});
   const ColorImage image = read_color_image(parameters, "filename", directory, parameters.boolean("raw"));
   texture.width = image.width;
   texture.height = image.height;
@@ -69,6 +63,29 @@ ImageTexture make_image_texture(const Object& description, const std::filesystem
         pixels[4 * (y * width + x) + c] = value;
       }
   texture.pixels = std::make_shared<const std::vector<float>>(std::move(pixels));
+  return texture;
+}
+
+}  // namespace
+
+ImageTexture make_image_texture(const Object& description, TextureFiles& files,
+                                std::vector<UnreadKey>& unread) {
+  const Parameters parameters(description, image_texture_plugin, unread);
+  using Wrap = ImageTexture::Wrap;
+  using Interpolation = ImageTexture::Interpolation;
+  const auto interpolation = choice<Interpolation, 2>(
+      parameters, "interpolation",
+      {{{"bilinear", Interpolation::bilinear}, {"nearest", Interpolation::nearest}}});
+  const auto wrap = choice<Wrap, 3>(
+      parameters, "wrap", {{{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}}});
+  const std::tuple key((files.directory / parameters.text("filename")).lexically_normal(),
+                       parameters.boolean("raw"), parameters.has("layer") ? parameters.text("layer") : "");
+  auto known = files.known.find(key);
+  if (known == files.known.end())
+    known = files.known.emplace(key, read_pixels(parameters, files.directory)).first;
+  ImageTexture texture = known->second;
+  texture.interpolation = interpolation;
+  texture.wrap = wrap;
   return texture;
 }
 

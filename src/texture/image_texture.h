@@ -7,7 +7,10 @@
 #include "scenefile/parameters.h"
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <string>
+#include <tuple>
 #include <vector>
 
 namespace etendue {
@@ -63,9 +66,18 @@ struct ImageTexture {
 };
 
 extern const Plugin image_texture_plugin;
-/// The file lies in `directory`. Throws InputError for one that cannot be read, is larger than 2^29 pixels or
+
+/// The image files that the textures of a scene have asked for, each kept once.
+struct TextureFiles {
+  std::filesystem::path directory;  ///< Where names start from.
+
+  /// The pixels, by the file, whether it is raw, and the layer.
+  std::map<std::tuple<std::filesystem::path, bool, std::string>, ImageTexture> known = {};
+};
+
+/// Throws InputError for one that cannot be read, is larger than 2^29 pixels or
 /// holds a value that is negative or not a number.
-ImageTexture make_image_texture(const Object& description, const std::filesystem::path& directory,
+ImageTexture make_image_texture(const Object& description, TextureFiles& files,
                                 std::vector<UnreadKey>& unread);
 
 }  // namespace etendue

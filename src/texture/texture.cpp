@@ -28,8 +28,8 @@ const std::vector<Plugin>& texture_plugins() {
   return plugins;
 }
 
-ColorTexture read_color_texture(const Parameters& parameters, std::string_view name,
-                                const std::filesystem::path& directory, std::vector<UnreadKey>& unread) {
+ColorTexture read_color_texture(const Parameters& parameters, std::string_view name, TextureFiles& files,
+                                std::vector<UnreadKey>& unread) {
   const Object* description = parameters.texture(name);
   if (!description) return nonnegative_color(parameters, name);
   if (description->type == checkerboard_plugin.name) return make_checkerboard(*description, unread);
@@ -37,7 +37,7 @@ ColorTexture read_color_texture(const Parameters& parameters, std::string_view n
   if (description->type == constant_plugin.name)
     return nonnegative_color(Parameters(*description, constant_plugin, unread), "value");
   if (description->type == image_texture_plugin.name || description->type == image_alias_name)
-    return make_image_texture(*description, directory, unread);
+    return make_image_texture(*description, files, unread);
   throw unknown_plugin(*description, texture_plugins());
 }
 

@@ -20,9 +20,9 @@ using ColorTexture = std::variant<Colorf, Checkerboard, UvTexture, ImageTexture>
 const std::vector<Plugin>& texture_plugins();
 
 /// The colour parameter `name`, none of its channels negative: its value, or the texture that stands for it,
-/// whose files lie in `directory`. Throws InputError for an unknown texture or a bad value.
-ColorTexture read_color_texture(const Parameters& parameters, std::string_view name,
-                                const std::filesystem::path& directory, std::vector<UnreadKey>& unread);
+/// read through `files`. Throws InputError for an unknown texture or a bad value.
+ColorTexture read_color_texture(const Parameters& parameters, std::string_view name, TextureFiles& files,
+                                std::vector<UnreadKey>& unread);
 
 inline bool is_uniform(const ColorTexture& texture) { return std::holds_alternative<Colorf>(texture); }
 

@@ -145,9 +145,15 @@ TEST_F(NoriXml, PointsAtTheWrongToken) {
               StartsWith("s.xml:1:46: 'q' is not a number"));
 }
 
+TEST_F(NoriXml, NumbersTooSmallForADoubleAreZero) {
+  EXPECT_EQ(std::get<double>(value("<float name='a' value='-1e-400'/>")), 0);
+  EXPECT_EQ(std::get<double>(value("<float name='a' value='4e-320'/>")), 4e-320);
+  EXPECT_EQ(std::get<Colorf>(value("<color name='a' value='0.000e-99999, 1, 1'/>")), (Colorf{0, 1, 1}));
+}
+
 TEST_F(NoriXml, RefusesNumbersThatAreNoneOrNotFinite) {
-  for (const char* number : {"nan", "inf", "-Infinity", "1e999", "1e-999", "0x10", "1.5f", "1e", "--1", "+-1",
-                             "", " ", "1 2", "1;2", "&bomb;"})
+  for (const char* number : {"nan", "inf", "-Infinity", "1e999", "0x10", "1.5f", "1e", "--1", "+-1", "", " ",
+                             "1 2", "1;2", "&bomb;"})
     EXPECT_NE(error(std::string("<scene><float name='a' value='") + number + "'/></scene>"), "") << number;
   for (const char* number : {"1.0", "2147483648", "1e3", "", "0x1"})
     EXPECT_NE(error(std::string("<scene><integer name='a' value='") + number + "'/></scene>"), "") << number;

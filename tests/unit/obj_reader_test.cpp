@@ -62,6 +62,32 @@ TEST(ObjReader, polygon_is_a_fan) {
   EXPECT_THAT(mesh.indices, ElementsAre(0, 1, 2, 0, 2, 3, 0, 3, 4));
 }
 
+TEST(ObjReader, concave_face_is_filled_not_its_hull) {
+  const auto mesh = read_text("v 0 1 0\nv 2 0 0\nv 0 3 0\nv -2 0 0\nf 1 2 3 4\nf 2 3 4 1\n");
+  for (std::size_t t = 0; t < 4; ++t) EXPECT_FLOAT_EQ(geometric_normal(mesh, t).z, 4) << t;
+  EXPECT_THAT(mesh.warnings, IsEmpty());
+}
+
+TEST(ObjReader, faces_that_cross_themselves_are_told_with_the_first) {
+  EXPECT_THAT(
+      read_text(square + std::string("f 1 2 3 4\nf 1 3 2 4\nf 2 4 3 1\n")).warnings,
+      ElementsAre(AllOf(HasSubstr(".obj:6:1: 2 polygons cross themselves, or are folded; the first"))));
+  EXPECT_THAT(read_text("v 0 0 0\nv 2 0 0\nv 3 1 2\nv 1 2 -1\nv -1 1 0\nf 1 2 3 4 5\n").warnings,
+              ElementsAre(HasSubstr(".obj:6:1: the corners of this polygon lie far from one plane")));
+}
+
+TEST(ObjReader, materials_are_counted_and_the_first_is_told) {
+  const Mesh mesh = read_text("mtllib box.mtl\n" + std::string(square) +
+                              "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl a\nf 1 2 4\n");
+  EXPECT_EQ(mesh.materials, 2u);
+  EXPECT_THAT(mesh.materials_passed_over, HasSubstr(".obj:6:1: the materials of this file are passed over"));
+  EXPECT_THAT(mesh.warnings, IsEmpty());
+}
+
+TEST(ObjReader, numbers_too_small_for_a_double_are_zero) {
+  EXPECT_EQ(corner(read_text("v 1e-400 -1e-9999 4e-320\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), 0), (Vec3f{0, 0, 0}));
+}
+
 TEST(ObjReader, negative_indices_count_back_from_the_face) {
   const auto mesh = read_text(square + std::string("f -4 -3 -2\nv 9 9 9\nf -5 -4 -1\n"));
   EXPECT_EQ(corner(mesh, 0), (Vec3f{0, 0, 0}));
@@ -269,9 +295,10 @@ TEST(ObjReaderError, numbers) {
               AllOf(at("1:5: "), HasSubstr("vertex 1: 'nan' is not a finite number")));
   EXPECT_THAT(error_of("v 0 0 -inf\n"), AllOf(at("1:7: "), HasSubstr("'-inf' is not a finite number")));
   EXPECT_THAT(error_of("v 0 0 1e999\n"), AllOf(at("1:7: "), HasSubstr("vertex 1: '1e999' is out of range")));
-  EXPECT_THAT(error_of("v 0 0 1e39\n"),
+  EXPECT_THAT(error_of("v 0 0 1e39\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
               AllOf(at("1:3: "), HasSubstr("vertex 1: 1e+39 does not fit a float")));
-  EXPECT_THAT(error_of("v 0 0 1e38\n", scaling({1, 1, 100})), HasSubstr("does not fit a float"));
+  EXPECT_THAT(error_of("v 0 0 1e38\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", scaling({1, 1, 100})),
+              HasSubstr("does not fit a float"));
   for (const char* wrong : {"1.#IND", "1,5", "0x10", "1e", "--1", "+-1", "+", ".", "1.5f", "3.1+e2", "1/2"})
     EXPECT_THAT(error_of(std::string("v 0 0 ") + wrong), AllOf(at("1:7: "), HasSubstr("is not a number")))
         << wrong;

@@ -240,6 +240,18 @@ TEST(PlyReaderError, elements) {
               HasSubstr("the faces do not list their vertices"));
 }
 
+TEST(PlyReader, concave_faces_are_filled_and_those_that_cross_themselves_told) {
+  const Mesh mesh = read_bytes(ascii("element vertex 4\n" + xyz + "element face 2\n" + list,
+                                     "0 1e-400 0\n2 -1 0\n0 2 0\n-2 -1 0\n4 0 1 2 3\n4 1 2 3 0\n"));
+  for (std::size_t t = 0; t < 4; ++t) {
+    const auto p = [&](std::size_t k) { return mesh.positions[mesh.indices[3 * t + k]]; };
+    EXPECT_GT(cross(p(1) - p(0), p(2) - p(0)).z, 0) << t;
+  }
+  EXPECT_TRUE(mesh.warnings.empty());
+  EXPECT_THAT(read_bytes(square("4 0 1 2 3\n4 0 2 1 3\n", 2)).warnings,
+              ::testing::ElementsAre(HasSubstr(".ply:15:1: face 1: this polygon crosses itself")));
+}
+
 TEST(PlyReaderError, rows_of_text) {
   const auto at = [](const char* place) { return HasSubstr(std::string("rows_of_text.ply:") + place); };
   const auto first_row = [](const std::string& row) {

@@ -64,7 +64,8 @@ ColorTexture load(const std::string& inside, const std::function<void(const std:
       << "</texture></bsdf></scene>";
   const SceneDesc scene = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
   std::vector<UnreadKey> unread;
-  return std::get<Diffuse>(make_material(scene.root.children.front(), scene.directory, unread)).albedo;
+  TextureFiles files{scene.directory};
+  return std::get<Diffuse>(make_material(scene.root.children.front(), files, unread)).albedo;
 }
 std::string file_xml(const std::string& name) {
   return fmt::format("<string name=\"filename\" value=\"{}\"/>", name);
@@ -81,6 +82,30 @@ TEST(Texture, ImagesStandUprightAndAreBilinearBetweenCentres) {
   EXPECT_FLOAT_EQ(at(image, 0.5f, 0.5f).r, 2.5f);
   EXPECT_NEAR(at(image, 0.35f, 1 / 3.0f).r, 0.8 * 3 + 0.2 * 4, 1e-5);
   EXPECT_FLOAT_EQ(at(image, 0.5f, 0.5f).g, 1);
+}
+
+TEST(Texture, AnImageFileIsReadAndKeptOnce) {
+  const test::TemporaryFolder folder;
+  write_six_pixels(folder.path() / "a.exr");
+  std::ofstream(folder.path() / "scene.xml") << [] {
+    std::string text = "<scene>";
+    for (const std::string more :
+         {"", "<string name=\"wrap\" value=\"clamp\"/>", "<boolean name=\"raw\" value=\"true\"/>"})
+      text += "<bsdf type=\"diffuse\"><texture type=\"imagetexture\" name=\"albedo\">" + file_xml("a.exr") +
+              more + "</texture></bsdf>";
+    return text + "</scene>";
+  }();
+  const SceneDesc scene = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
+  std::vector<UnreadKey> unread;
+  TextureFiles files{scene.directory};
+  std::vector<ImageTexture> images;
+  for (const Object& bsdf : scene.root.children)
+    images.push_back(std::get<ImageTexture>(std::get<Diffuse>(make_material(bsdf, files, unread)).albedo));
+  EXPECT_EQ(images[0].pixels, images[1].pixels);
+  EXPECT_NE(images[0].pixels, images[2].pixels);
+  EXPECT_EQ(images[0].wrap, ImageTexture::Wrap::repeat);
+  EXPECT_EQ(images[1].wrap, ImageTexture::Wrap::clamp);
+  EXPECT_EQ(images[2].width, 2);
 }
 
 TEST(Texture, ImagesWrapAsAsked) {
