@@ -2,6 +2,7 @@
 
 #include "geometry/mesh_builder.h"
 #include "geometry/mesh_text.h"
+#include "scenefile/file_format.h"
 
 #include <algorithm>
 #include <array>
@@ -339,6 +340,10 @@ Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_obj
   const auto source = read_mesh_file(file, "an OBJ mesh");
   if (source->text.empty())
     throw InputError(Location{source}, "the file is empty", "expected an OBJ mesh: v and f statements");
+  if (const std::string_view format = format_of_content(source->text);
+      !format.empty() && format != "an OBJ mesh")
+    throw InputError(whole_file(*source), fmt::format("this is {}, not an OBJ mesh", format),
+                     format == "a PLY mesh" ? "write type=\"ply\" in the scene" : "");
   auto read = Parser(source, world_from_object).parse();
   if (read.faces.empty())
     throw InputError(Location{source}, "no face",

@@ -238,6 +238,43 @@ TEST_F(NoriTest, SamplesOfBsdfsFollowTheirDensity) {
   }
 }
 
+TEST_F(NoriTest, SamplesOfPhaseFunctionsFollowTheirDensity) {
+  const std::vector<CaseResult> results = run(
+      "<test type='chi2test'><phase type='hg'><float name='g' value='-0.4'/></phase><phase type='isotropic'/>"
+      "<bsdf type='diffuse'/></test>");
+  ASSERT_EQ(results.size(), 15u);
+  for (const CaseResult& result : results) EXPECT_GT(result.p_value, surely_right) << result.problem;
+  EXPECT_EQ(results[0].subject, "phase");
+  EXPECT_EQ(results[0].type, "hg");
+  EXPECT_EQ(results[14].subject, "bsdf");
+}
+
+// Integrals over the hemisphere by the midpoint rule, of the formulas as docs/scene_format.md has them.
+TEST_F(NoriTest, RoughSurfacesOfZaragoza) {
+  const std::string angles_of_two = "<string name='angles' value='0, 50'/>";
+  for (const auto& [references, bsdf] : std::vector<std::pair<std::string, std::string>>{
+           {"0.45324, 0.42068",
+            "<bsdf type='roughconductor'><color name='R0' value='.2 .5 .8'/><float name='alpha' "
+            "value='.4'/></bsdf>"},
+           {"0.42428, 0.39593",
+            "<bsdf type='roughsubstrate'><color name='kd' value='.6 .4 .1'/><float name='alpha' "
+            "value='.25'/><float name='intIOR' value='1.4'/><float name='extIOR' value='1'/></bsdf>"}})
+    for (const CaseResult& result : run(ttest(references, angles_of_two + bsdf)))
+      EXPECT_GT(result.p_value, surely_right) << bsdf << result.mean;
+}
+
+// Every ray runs along the axis, to the pole of the ball: |n| there is (0, 0, 1).
+TEST_F(NoriTest, ACameraWhoseUpIsItsDirectionSeesOnePoint) {
+  const CaseResult result =
+      run(ttest("0.072169",
+                "<scene><integrator type='normals'/><camera type='perspective'><integer name='width' "
+                "value='3'/><integer name='height' value='2'/><float name='fov' value='70'/><transform "
+                "name='toWorld'><lookat origin='0,0,9' target='0,0,2' up='0,0,1'/></transform></camera>"
+                "<shape type='sphere'/></scene>"))[0];
+  EXPECT_TRUE(result.is_passed);
+  EXPECT_NEAR(result.mean, 0.072169, 1e-7);
+}
+
 TEST_F(NoriTest, ALobeTooNarrowForTheCellsIsNoMisfit) {
   const auto rough = [](const char* alpha, const char* rows) {
     return fmt::format(
