@@ -5,7 +5,8 @@
 // file's own level of 0.01 where the samples have no variance), fixed seeds.
 // Seen to fail when: Diffuse's samples weigh 1 % too much; its density is 1 % too large; Phong's density
 // takes n for n + 1; the pixel covers only one pixel of the film; every task takes the same seed; cells are
-// even in theta under every dialect.
+// even in theta under every dialect; samples of a phase function are turned to a fixed direction; R0 is
+// rendered as copper; the base under a coat loses nothing to the reflection along the normal.
 #include "noritest/noritest.h"
 
 #include "render/thread_limit.h"
