@@ -39,6 +39,7 @@ std::vector<std::filesystem::path> files_of(const SceneDesc& description,
                                             const std::filesystem::path& scene_file) {
   std::vector<std::filesystem::path> files = files_named_by(description);
   files.push_back(scene_file);
+  if (!description.settings_file.empty()) files.push_back(description.settings_file);
   return files;
 }
 

@@ -23,6 +23,13 @@ namespace {
 void announce(const RenderOptions& options, const SceneDesc& description, const LoadedScene& loaded,
               const RenderSettings& settings) {
   if (options.is_quiet) return;
+  if (!description.is_dialect_told)
+    say("note: nothing in {} tells which generation of Nori it is for, so it is read as '{}'; where the "
+        "picture comes "
+        "out mirrored,\n  it is another's: pass --dialect nori-eth (or nori-2012), or let its folder say so "
+        "for all "
+        "scenes, in a file etendue.json:\n  {{\"dialect\": \"nori-eth\"}}\n",
+        options.scene_file, dialect_name(description.dialect));
   const int threads = settings.threads > 0 ? settings.threads : available_threads();
   say("{}: {} ({}), {}x{}, {} samples a pixel in {} replicates, {}, {} threads, {}\n", options.scene_file,
       dialect_name(description.dialect), description.dialect_reason, loaded.scene.camera.width_px,

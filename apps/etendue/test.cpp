@@ -183,8 +183,11 @@ void add_test_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   add_run_options(*command, options->run);
   command
-      ->add_option("--sampler", options->sampler,
-                   "sobol: fewer correct files fail than their level says; independent: exactly as many")
+      ->add_option(
+          "--sampler", options->sampler,
+          "sobol: fewer correct files fail than their level says; independent: as many. Neither holds "
+          "where the variance has no bound, as for path_ems or light where lit surfaces meet a "
+          "light: there more fail")
       ->capture_default_str();
   command->add_flag("--quiet", options->is_quiet, "Print only cases that fail, and the summary");
   command->callback([options, &exit_code] { exit_code = run(*options); });

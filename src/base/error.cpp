@@ -174,7 +174,7 @@ std::string format_message(const Location& where, std::string_view problem, std:
   return message;
 }
 
-std::string known_names(std::string_view wrong, std::vector<std::string> known, std::size_t most) {
+std::string known_names(std::string_view wrong, std::vector<std::string> known) {
   if (known.empty()) return "known: none";
   // Beyond this a name is a mistake of another kind, and the table of distances would be large.
   wrong = wrong.substr(0, 64);
@@ -183,9 +183,7 @@ std::string known_names(std::string_view wrong, std::vector<std::string> known, 
   std::sort(ranked.begin(), ranked.end());
 
   std::string names;
-  for (std::size_t i = 0; i < std::min(most, ranked.size()); ++i)
-    names += (i == 0 ? "" : ", ") + ranked[i].second;
-  if (ranked.size() > most) names += ", ...";
+  for (const auto& [distance, name] : ranked) names += (names.empty() ? "" : ", ") + name;
   const auto& [distance, nearest] = ranked.front();
   const bool is_slip = 3 * distance <= std::max(wrong.size(), nearest.size()) && wrong != nearest;
   return (is_slip ? fmt::format("did you mean '{}'? ", nearest) : std::string()) + "known: " + names;

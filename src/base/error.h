@@ -42,8 +42,8 @@ class InputError : public std::runtime_error {
       : std::runtime_error(format_message(where, problem, hint)) {}
 };
 
-/// "known: a, b, c", nearest to `wrong` first (edit distance, then alphabet); at most `most` names. Where the
+/// "known: a, b, c", all of them, nearest to `wrong` first (edit distance, then alphabet). Where the
 /// nearest may be what was meant, "did you mean 'a'?" comes before.
-std::string known_names(std::string_view wrong, std::vector<std::string> known, std::size_t most = 8);
+std::string known_names(std::string_view wrong, std::vector<std::string> known);
 
 }  // namespace etendue

@@ -100,6 +100,12 @@ Transform look_at(const Vec3<double>& origin, const Vec3<double>& target, const 
   return t;
 }
 
+bool is_projection_to_z(const Transform& t) {
+  const auto column = [&](std::size_t i) { return Vec3<double>{t.m[0][i], t.m[1][i], t.m[2][i]}; };
+  const Vec3<double> zero{0, 0, 0};
+  return column(0) == zero && column(1) == zero && column(2) != zero;
+}
+
 double determinant(const Transform& t) {
   const std::array<Row, 3> c = cofactors(t);
   return t.m[0][0] * c[0][0] + t.m[0][1] * c[0][1] + t.m[0][2] * c[0][2];

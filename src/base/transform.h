@@ -23,6 +23,9 @@ Transform rotation(const Vec3<double>& axis, double angle_deg);
 /// The result is singular (determinant 0) where target = origin or up is parallel to the direction (sine <
 /// 1e-12).
 Transform look_at(const Vec3<double>& origin, const Vec3<double>& target, const Vec3<double>& up);
+/// The first two columns are 0 and the third is not: all that is left of a vector is its z, along one
+/// direction.
+bool is_projection_to_z(const Transform& t);
 
 double determinant(const Transform& t);  ///< Of the upper left 3x3 block.
 /// True where all entries are finite and the 3x3 block can be inverted in floating point, whatever its unit

@@ -5,9 +5,9 @@
 namespace etendue {
 
 const std::vector<Plugin>& bsdf_plugins() {
-  static const std::vector<Plugin> plugins{diffuse_plugin,        phong_plugin,      mirror_plugin,
-                                           dielectric_plugin,     microfacet_plugin, roughconductor_plugin,
-                                           roughdielectric_plugin};
+  static const std::vector<Plugin> plugins{
+      diffuse_plugin,    phong_plugin,          mirror_plugin,          dielectric_plugin,
+      microfacet_plugin, roughconductor_plugin, roughdielectric_plugin, roughsubstrate_plugin};
   return plugins;
 }
 
@@ -19,6 +19,7 @@ Material make_material(const Object& description, TextureFiles& files, std::vect
   if (description.type == microfacet_plugin.name) return make_microfacet(description, unread);
   if (description.type == roughconductor_plugin.name) return make_roughconductor(description, unread);
   if (description.type == roughdielectric_plugin.name) return make_roughdielectric(description, unread);
+  if (description.type == roughsubstrate_plugin.name) return make_roughsubstrate(description, unread);
   throw unknown_plugin(description, bsdf_plugins());
 }
 

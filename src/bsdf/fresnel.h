@@ -43,4 +43,12 @@ F conductor_reflectance(const F& cos_theta, float eta, float k) {
   return F(0.5f) * (r_s + r_p);
 }
 
+/// Schlick 1994, "An inexpensive BRDF model for physically-based rendering", eq. 15; `r0` is the reflectance
+/// along the normal, `cos_theta` in [0, 1].
+template <class F>
+F schlick_reflectance(const F& cos_theta, float r0) {
+  const F rest = F(1) - cos_theta, rest_sq = rest * rest;
+  return F(r0) + F(1 - r0) * rest_sq * rest_sq * rest;
+}
+
 }  // namespace etendue

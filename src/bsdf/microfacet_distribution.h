@@ -41,6 +41,19 @@ struct MicrofacetDistribution {
     return F(2) / (cos_theta * (F(1) + erf_nonnegative(slope, bell)) + stretched_sin * bell * F(inv_sqrt_pi));
   }
 
+  /// The same by the rational approximation of Beckmann's that Nori and its forks take: Walter et al. 2007,
+  /// below eq. 27.
+  template <class F>
+  F rational_shadowing_over_cos(const F& cos_theta) const {
+    const F stretched_sin = F(alpha) * sqrt(max(F(1) - cos_theta * cos_theta, F(0)));
+    // b = cos_theta / stretched_sin, multiplied out so that neither may be 0.
+    const F numerator = F(3.535f) * stretched_sin + F(2.181f) * cos_theta;
+    const F denominator =
+        stretched_sin * stretched_sin + cos_theta * (F(2.276f) * stretched_sin + F(2.577f) * cos_theta);
+    const Mask<F> is_shadowed = cos_theta < F(1.6f) * stretched_sin;
+    return select(is_shadowed, numerator / max(denominator, F(1e-30f)), F(1) / max(cos_theta, F(1e-30f)));
+  }
+
   /// A normal with density D(h) h.z; Beckmann's only.
   template <class F>
   Vec3<F> sample_normal(const Vec2<F>& u) const {

@@ -109,7 +109,7 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   const Lens lens = lens_of(parameters, unread);
   const Transform world_from_camera =
       parameters.has("toWorld") ? parameters.transform("toWorld") : Transform{};
-  if (!is_invertible(world_from_camera))
+  if (!is_invertible(world_from_camera) && !is_projection_to_z(world_from_camera))
     throw InputError(
         parameters.location("toWorld"), "the camera's transform is singular",
         "in a lookat, target must differ from origin and up must not be parallel to the direction");

@@ -43,8 +43,9 @@ std::int32_t Geometry::add_mesh(const Mesh& mesh, SurfaceIds ids) {
   return count() - 1;
 }
 
-std::int32_t Geometry::add_sphere(const Sphere& added, SurfaceIds ids) {
+std::int32_t Geometry::add_sphere(const Sphere& added, SurfaceIds ids, float u_offset_of_sphere) {
   add_row(ids);
+  u_offset.back() = u_offset_of_sphere;
   sphere.back() = std::int32_t(spheres.size());
   spheres.push_back(added);
   return count() - 1;
@@ -60,6 +61,7 @@ std::int32_t Geometry::add_disk(const Disk& added, SurfaceIds ids) {
 void Geometry::add_row(SurfaceIds ids) {
   material.push_back(ids.material);
   light.push_back(ids.light);
+  u_offset.push_back(0);
   for (std::vector<std::int32_t>* column : {&first_triangle, &has_normals, &has_uvs, &triangles})
     column->push_back(0);
   for (std::vector<std::int32_t>* column : {&sphere, &disk}) column->push_back(-1);

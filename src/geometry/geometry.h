@@ -35,7 +35,7 @@ class Geometry {
  public:
   /// Each returns the geometry's id.
   std::int32_t add_mesh(const Mesh& mesh, SurfaceIds ids);
-  std::int32_t add_sphere(const Sphere& added, SurfaceIds ids);
+  std::int32_t add_sphere(const Sphere& added, SurfaceIds ids, float u_offset_of_sphere = 0);
   std::int32_t add_disk(const Disk& added, SurfaceIds ids);
 
   std::int32_t count() const { return std::int32_t(material.size()); }
@@ -50,6 +50,7 @@ class Geometry {
   std::vector<std::int32_t> sphere;          ///< Into `spheres`; -1 unless a sphere.
   std::vector<std::int32_t> disk;            ///< Into `disks`; -1 unless a disk.
   std::vector<float> longest_edge;           ///< Of a mesh's triangles (m); 0 unless a mesh.
+  std::vector<float> u_offset;               ///< Of a sphere: what is added to its u, in [0, 1).
   // Per vertex, of all meshes. Normals are packed like the positions, zero where a mesh has none. The ray
   // caster reads 16 bytes of each position, so one spare vertex always stands behind the last.
   std::vector<Vec3f> positions, normals;

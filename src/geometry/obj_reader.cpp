@@ -2,6 +2,7 @@
 
 #include "geometry/mesh_builder.h"
 #include "geometry/mesh_text.h"
+#include "scenefile/file_format.h"
 
 #include <algorithm>
 #include <array>
@@ -356,6 +357,10 @@ MeshFile read_obj_file(const std::filesystem::path& file) {
   const auto source = read_mesh_file(file, "an OBJ mesh");
   if (source->text.empty())
     throw InputError(Location{source}, "the file is empty", "expected an OBJ mesh: v and f statements");
+  if (const std::string_view format = format_of_content(source->text);
+      !format.empty() && format != "an OBJ mesh")
+    throw InputError(whole_file(*source), fmt::format("this is {}, not an OBJ mesh", format),
+                     format == "a PLY mesh" ? "write type=\"ply\" in the scene" : "");
   auto read = Parser(source).parse();
   if (read.faces.empty())
     throw InputError(Location{source}, "no face",

@@ -144,7 +144,7 @@ class HeaderParser {
     const auto known = find_name(type_names, name);
     if (known == type_names.end())
       throw InputError(at(name), fmt::format("{} is not a type of PLY", quoted(name)),
-                       known_names(name, list_of(type_names), type_names.size()));
+                       known_names(name, list_of(type_names)));
     return known->second;
   }
 

@@ -3,6 +3,7 @@
 #include "geometry/mesh_builder.h"
 #include "geometry/mesh_text.h"
 #include "geometry/ply_header.h"
+#include "scenefile/file_format.h"
 
 #include <algorithm>
 #include <array>
@@ -479,6 +480,9 @@ class PlyReader {
 MeshFile read_ply_file(const std::filesystem::path& file) {
   const auto source = read_mesh_file(file, "a PLY mesh");
   if (source->text.empty()) throw InputError(Location{source}, "the file is empty", "expected a PLY mesh");
+  if (format_of_content(source->text) == "an OBJ mesh")
+    throw InputError(whole_file(*source), "this is an OBJ mesh, not a PLY mesh",
+                     "write type=\"obj\" in the scene");
   const auto reader = std::make_shared<PlyReader>(source);
   reader->read();
   return [reader](const Transform& world_from_object) { return reader->build(world_from_object); };

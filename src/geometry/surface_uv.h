@@ -16,11 +16,13 @@ F turns_of(const F& x, const F& y) {
 }
 
 /// u: the angle around z from the x axis; v: the angle from +z; both over their range, [0, 1]. This is Nori's
-/// sphericalCoordinates(); the numbers of Tuebingen's test of its checkerboard ask for it.
-/// \param ng the sphere's outward normal, unit, in the world
+/// sphericalCoordinates(); the numbers of Tuebingen's test of its checkerboard ask for it. ETH's u begins
+/// half a turn further on. \param ng the sphere's outward normal, unit, in the world \param u_offset added to
+/// u, modulo 1; in [0, 1)
 template <class F>
-Vec2<F> sphere_uv(const Vec3<F>& ng) {
-  return {turns_of(ng.x, ng.y), atan2(sqrt(ng.x * ng.x + ng.y * ng.y), ng.z) * F(inv_pi)};
+Vec2<F> sphere_uv(const Vec3<F>& ng, const F& u_offset) {
+  const F u = turns_of(ng.x, ng.y) + u_offset;
+  return {select(u > F(1), u - F(1), u), atan2(sqrt(ng.x * ng.x + ng.y * ng.y), ng.z) * F(inv_pi)};
 }
 
 /// u: the distance from the centre, 1 at the edge; v: the angle from the x axis over 2 pi, as in Mitsuba.
@@ -44,7 +46,7 @@ Vec2<F> surface_uv(const Geometry& geometry, const Int<F>& geometry_id, const In
   const auto choose = [&](const Mask<F>& lanes, const Vec2<F>& value) {
     uv = {select(lanes, value.x, uv.x), select(lanes, value.y, uv.y)};
   };
-  if (any(is_sphere)) choose(is_sphere, sphere_uv(ng));
+  if (any(is_sphere)) choose(is_sphere, sphere_uv(ng, gather(geometry.u_offset.data(), safe_id)));
   if (any(is_disk)) choose(is_disk, disk_uv(barycentric));
   if (!any(is_mesh)) return uv;
   const Mask<F> has_uvs = mask_and(is_mesh, equal(gather(geometry.has_uvs.data(), safe_id), Int<F>(1)));

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "image/decoders.h"
+#include "image/image_file.h"
 #include "image/unreadable.h"
 
 #include <algorithm>
@@ -22,6 +23,17 @@ std::vector<unsigned char> bytes_of(const std::filesystem::path& file) {
   return bytes;
 }
 
+/// A file that calls itself an EXR or a PNG and is not was most likely taken for another: it is not read as
+/// what it happens to be.
+void check_name(const std::filesystem::path& file, const Decoder& decoder) {
+  if (&decoder == &exr_decoder || &decoder == &png_decoder || !image_format(file)) return;
+  throw ColorRequestError(
+      ColorRequestError::About::file,
+      fmt::format("is neither an EXR nor a PNG image, as its name has it, but a {} image", decoder.name),
+      fmt::format("if it is the one you mean, let its name end in {}",
+                  &decoder == &jpeg_decoder ? ".jpg" : ".hdr"));
+}
+
 std::string printable(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
@@ -38,6 +50,7 @@ ColorImage read_colors(const std::filesystem::path& file, const ColorRequest& re
     const Bytes begin = Bytes(bytes).first(std::min<std::size_t>(bytes.size(), 16));
     for (const Decoder* decoder : {&exr_decoder, &png_decoder, &jpeg_decoder, &hdr_decoder})
       if (decoder->is_begun_by(begin)) {
+        check_name(file, *decoder);
         format = fmt::format("{} image", decoder->name);
         if (!request.layer.empty() && decoder != &exr_decoder)
           throw ColorRequestError(ColorRequestError::About::layer,

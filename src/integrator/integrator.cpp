@@ -50,7 +50,10 @@ PathRules path_mats_rules(Heuristic) { return PathRules::paths(ByBsdf{}); }
 PathRules path_mis_rules(Heuristic heuristic) { return PathRules::paths(ByBoth{heuristic}); }
 
 constexpr Row table[]{
-    {"light", "light", "Area sampling: each sample takes one point on one light.", Keys::none, light_rules},
+    {"light", "light",
+     "Area sampling: each sample takes one point on one light. Its variance has no bound where a lit "
+     "surface meets the light.",
+     Keys::none, light_rules},
     {"area", "light", "", Keys::none, light_rules},
     {"direct_ems", "light", "", Keys::none, light_rules},
     {"direct", "direct", "", Keys::sampling, direct_rules},
@@ -65,7 +68,9 @@ constexpr Row table[]{
     {"whitted", "whitted", "Light samples, seen through mirrors and smooth dielectrics too.", Keys::none,
      whitted_rules},
     {"path", "path_mis", "", Keys::heuristic, path_mis_rules},
-    {"path_ems", "path_ems", "Paths with any number of bounces; at each, direct light by light samples.",
+    {"path_ems", "path_ems",
+     "Paths with any number of bounces; at each, direct light by light samples. The variance has no bound "
+     "where lit or shining surfaces meet a light.",
      Keys::none, path_ems_rules},
     {"path_mats", "path_mats", "Paths with any number of bounces that find lights by chance.", Keys::none,
      path_mats_rules},

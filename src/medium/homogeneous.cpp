@@ -27,6 +27,18 @@ const Plugin hg_plugin{
     {{"g", Type::real, "0", "", "Mean cosine of the angle of scattering, between -1 and 1; > 0: forwards"}},
     {}};
 
+}  // namespace
+
+const std::vector<Plugin>& medium_plugins() {
+  static const std::vector<Plugin> plugins{homogeneous_plugin};
+  return plugins;
+}
+
+const std::vector<Plugin>& phase_plugins() {
+  static const std::vector<Plugin> plugins{isotropic_plugin, hg_plugin};
+  return plugins;
+}
+
 HenyeyGreenstein make_phase(const Object& description, std::vector<UnreadKey>& unread) {
   if (description.type == isotropic_plugin.name) {
     Parameters(description, isotropic_plugin, unread);
@@ -40,18 +52,6 @@ HenyeyGreenstein make_phase(const Object& description, std::vector<UnreadKey>& u
     throw InputError(parameters.location("g"),
                      fmt::format("'g' is {}; it must be from {} to {}", g, -most, most));
   return {float(g)};
-}
-
-}  // namespace
-
-const std::vector<Plugin>& medium_plugins() {
-  static const std::vector<Plugin> plugins{homogeneous_plugin};
-  return plugins;
-}
-
-const std::vector<Plugin>& phase_plugins() {
-  static const std::vector<Plugin> plugins{isotropic_plugin, hg_plugin};
-  return plugins;
 }
 
 HomogeneousMedium::HomogeneousMedium(const Colorf& sigma_a, const Colorf& sigma_s,

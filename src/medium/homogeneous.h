@@ -100,6 +100,8 @@ class HomogeneousMedium {
 
 const std::vector<Plugin>& medium_plugins();
 const std::vector<Plugin>& phase_plugins();
+/// Throws InputError for an unknown one or a parameter out of range.
+HenyeyGreenstein make_phase(const Object& description, std::vector<UnreadKey>& unread);
 
 /// Throws InputError for unknown names, coefficients that are not finite and >= 0, a singular transform.
 HomogeneousMedium make_medium(const Object& description, std::vector<UnreadKey>& unread);

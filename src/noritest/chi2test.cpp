@@ -1,12 +1,15 @@
-// Pearson's chi-squared test of "samples of a BSDF follow its own density", over cells of the whole sphere.
+// Pearson's chi-squared test of "samples of a BSDF or phase function follow its own density", over cells of
+// the whole sphere.
 //
 // The rules are those of Nori's chi2test (W. Jakob): the cells, the number of samples and of directions, the
 // pooling, the allowance of a cell that should be empty, and the level of the whole file with its Sidak
 // correction. Samples of weight 0 are not counted, so the density may integrate to less than 1. The expected
 // counts are integrated more exactly than there, by Gauss and Kronrod's rule instead of Simpson's: narrow
 // lobes need it.
+#include "base/frame.h"
 #include "base/hash.h"
 #include "bsdf/bsdf.h"
+#include "medium/homogeneous.h"
 #include "noritest/case_runner.h"
 #include "noritest/random_squares.h"
 #include "stats/chi_squared.h"
@@ -29,14 +32,14 @@ using Type = Parameter::Type;
 const Plugin chi2test_plugin{
     "test",
     "chi2test",
-    "Chi-squared tests of BSDFs: do their samples follow their density?",
+    "Chi-squared tests of BSDFs and phase functions: do their samples follow their density?",
     {{"resolution", Type::integer, "10", "",
       "Rows of cells over the sphere; there are twice as many columns"},
      {"sampleCount", Type::integer, "-1", "", "Samples a direction; negative: 5000 a cell"},
-     {"testCount", Type::integer, "5", "", "Random directions to the viewer for each BSDF"},
+     {"testCount", Type::integer, "5", "", "Random directions to the viewer for each"},
      {"minExpFrequency", Type::integer, "5", "", "Cells with fewer expected samples are pooled"},
      {"significanceLevel", Type::real, "0.01", "", "Of all cases of the file together"}},
-    {"bsdf", "brdf"}};
+    {"bsdf", "brdf", "phase"}};
 
 namespace {
 
@@ -99,13 +102,27 @@ Chi2Rules rules_of(const TestRun& run, const Parameters& parameters) {
   return rules;
 }
 
-Vec3f random_viewer(const Chi2Rules& rules, const Vec2f& u) {
+/// Above the surface; in a medium anywhere.
+Vec3f random_viewer(const Chi2Rules& rules, const Vec2f& u, bool is_in_medium) {
+  if (is_in_medium) return square_to_uniform_sphere(u);
   if (rules.is_first_generation) return square_to_cosine_hemisphere(u);
   const float sin_theta = std::sqrt(std::max(1 - u.x * u.x, 0.0f));
   return {sin_theta * std::cos(2 * pi * u.y), sin_theta * std::sin(2 * pi * u.y), u.x};
 }
 
 bool is_finite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// A phase function for a viewer anywhere, though it samples in the frame of its ray.
+struct FreePhase {
+  HenyeyGreenstein phase;
+
+  BsdfSample<float> sample(const Vec3f& wo, const Vec2f& u) const {
+    BsdfSample<float> sample = phase.sample(Vec3f{0, 0, 1}, u);
+    sample.wi_local = Frame<float>(wo).world_from_local(sample.wi_local);
+    return sample;
+  }
+  float pdf_solid_angle(const Vec3f& wo, const Vec3f& wi) const { return phase.pdf_solid_angle(wo, wi); }
+};
 
 struct Observed {
   std::vector<double> counts;
@@ -225,30 +242,32 @@ void run_chi2test(TestRun& run) {
   const Chi2Rules rules = rules_of(run, parameters);
   if (run.test.root.children.empty())
     throw InputError(run.test.root.location, "this test has nothing to test",
-                     "put <bsdf> elements into a chi2test");
+                     "put <bsdf> or <phase> elements into a chi2test");
   std::uint64_t number = 0;
-  for (const Object& bsdf : run.test.root.children)
+  for (const Object& subject : run.test.root.children) {
+    const bool is_phase = subject.family == "phase";
     for (int direction = 0; direction < rules.directions; ++direction) {
       const std::uint64_t seed = hash64(hash64(run.settings.seed) + number++);
       CaseResult result{.kind = "chi2test",
-                        .subject = "bsdf",
-                        .type = bsdf.type,
+                        .subject = is_phase ? "phase" : "bsdf",
+                        .type = subject.type,
                         .detail = fmt::format("direction {}", direction + 1)};
       run.run_case(result, [&](CaseResult& measured) {
-        std::vector<UnreadKey> unread_of_bsdf;
+        std::vector<UnreadKey> unread_of_subject;
+        const Vec3f wo =
+            random_viewer(rules, RandomSquares(SamplerKind::independent, hash64(seed))[0], is_phase);
+        const auto test = [&](const auto& model) {
+          if (direction == 0) run.warn(unread_of_subject);
+          judge(measured, observe(model, wo, rules, run.settings, seed),
+                expect(model, wo, rules, run.settings), rules);
+        };
+        if (is_phase) return test(FreePhase{make_phase(subject, unread_of_subject)});
         TextureFiles textures{run.test.directory};
-        const Material material = make_material(bsdf, textures, unread_of_bsdf);
-        if (direction == 0) run.warn(unread_of_bsdf);
-        const Vec3f wo = random_viewer(rules, RandomSquares(SamplerKind::independent, hash64(seed))[0]);
-        std::visit(
-            [&](const auto& model) {
-              const auto at_point = model.at(Vec2f{0, 0}, true);
-              judge(measured, observe(at_point, wo, rules, run.settings, seed),
-                    expect(at_point, wo, rules, run.settings), rules);
-            },
-            material);
+        const Material material = make_material(subject, textures, unread_of_subject);
+        std::visit([&](const auto& model) { test(model.at(Vec2f{0, 0}, true)); }, material);
       });
     }
+  }
 }
 
 }  // namespace etendue

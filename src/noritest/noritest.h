@@ -21,7 +21,8 @@ struct TestSettings {
   Isa isa = Isa::scalar;  ///< For scenes; BSDFs and lights are tested one lane wide.
   /// Sobol points make p-values cautious: means scatter less than the t-test believes, so that a correct
   /// renderer fails less often than the level says, and a wrong one no later. Independent ones make them
-  /// exact.
+  /// exact. Both hold only for estimators of bounded variance: light samples where lit surfaces meet a light
+  /// have none, and there correct renderers fail more often.
   SamplerKind sampler = SamplerKind::sobol;
   const std::atomic<bool>* stop = nullptr;  ///< Once it is true, cases are left out, the running one too.
 };
@@ -29,8 +30,8 @@ struct TestSettings {
 /// What became of one case. A number that the kind of test does not have is NaN.
 struct CaseResult {
   std::string kind{};     ///< "ttest" or "chi2test".
-  std::string subject{};  ///< "scene", "bsdf" or "emitter".
-  std::string type{};     ///< Of the scene's integrator, the BSDF or the emitter.
+  std::string subject{};  ///< "scene", "bsdf", "phase" or "emitter".
+  std::string type{};     ///< Of the scene's integrator, the BSDF, the phase function or the emitter.
   std::string detail{};   ///< "at 45 degrees", "direction 3": which of several cases of one subject.
   double mean = std::numeric_limits<double>::quiet_NaN();
   double reference = std::numeric_limits<double>::quiet_NaN();

@@ -37,7 +37,10 @@ const Plugin sphere_plugin{
     "shape",
     "sphere",
     "A sphere, exact.",
-    {{"center", Type::point, "0 0 0", "m", "Centre"}, {"radius", Type::real, "1", "m", "Radius"}, to_world},
+    {{"center", Type::point, "0 0 0", "m", "Centre"},
+     {"radius", Type::real, "1", "m", "Radius"},
+     {"uOffset", Type::real, "0", "", "Added to u, from 0 to below 1; 0.5 is ETH's u of 2020"},
+     to_world},
     surface_children};
 const Plugin rectangle_plugin{"shape",
                               "rectangle",
@@ -145,7 +148,11 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
   } else if (object.type == sphere_plugin.name) {
     const Parameters parameters(object, sphere_plugin, unread);
     const Sphere sphere = make_sphere(parameters);
-    geometry.add_sphere(sphere, ids);
+    const double u_offset = parameters.real("uOffset");
+    if (!(u_offset >= 0 && float(u_offset) < 1))
+      throw InputError(parameters.location("uOffset"),
+                       fmt::format("'uOffset' is {}; it must be from 0 to below 1", u_offset));
+    geometry.add_sphere(sphere, ids, float(u_offset));
     if (radiance) lights.add<SphereLights>(*radiance, label(object, numbered), sphere);
   } else if (object.type == rectangle_plugin.name) {
     const Parameters parameters(object, rectangle_plugin, unread);

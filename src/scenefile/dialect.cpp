@@ -90,9 +90,7 @@ DialectGuess recognize_dialect(const Object& root) {
           fmt::format("{} in line {}: only {} that", describe(mark), line_and_column(object->location).line,
                       mark.dialect == Dialect::nori_2012 ? "the first generation has"
                                                          : "the forks of ETH and Tuebingen have")};
-  return {Dialect::nori,
-          "nothing in the file tells its generation, so it is read as the current one; where the picture is "
-          "mirrored, pass --dialect nori-eth or nori-2012"};
+  return {Dialect::nori, "nothing in the file tells its generation, so it is read as the current one", false};
 }
 
 }  // namespace etendue

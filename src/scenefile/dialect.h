@@ -19,7 +19,8 @@ Dialect dialect_from_name(std::string_view name);
 
 struct DialectGuess {
   Dialect dialect;
-  std::string reason;  ///< Which element told it, with its line; or that none did, and what to do then.
+  std::string reason;  ///< Which element told it, with its line; or that none did.
+  bool is_told = true;
 };
 
 /// Judges a whole file by the names in docs/scene_format.md ("The dialect"): the first generation's, then

@@ -1,5 +1,8 @@
 #include "scenefile/nori_xml.h"
 
+#include "scenefile/file_format.h"
+#include "scenefile/folder_settings.h"
+#include "scenefile/foreign_names.h"
 #include "scenefile/text_file.h"
 #include "scenefile/value_text.h"
 
@@ -89,7 +92,7 @@ class Reader {
  public:
   explicit Reader(std::shared_ptr<const SourceFile> source) : source_(std::move(source)) {}
 
-  SceneDesc read(std::optional<Dialect> dialect);
+  SceneDesc read(std::optional<Dialect> dialect, const std::optional<FolderSettings>& folder);
 
  private:
   Location at(std::size_t offset, std::size_t length = 1) const { return {source_, offset, length}; }
@@ -100,10 +103,11 @@ class Reader {
   std::vector<pugi::xml_node> child_elements(const Element& element) const;
   void refuse_children(const Element& element) const;
   Object read_object(const Element& element, int level);
-  Property read_property(const Element& element) const;
+  Property read_property(const Element& element, std::string_view owner);
   Property::Value read_value(const Element& element, const Attribute& value) const;
-  Transform read_operations(const Element& element) const;
-  Transform read_operation(const Element& element) const;
+  Transform read_operations(const Element& element, std::string_view owner);
+  Transform read_operation(const Element& element, std::string_view owner);
+  Transform read_lookat(const Element& element, std::string_view owner);
   Vec3<double> read_vector(const Attribute& attribute) const;
 
   std::shared_ptr<const SourceFile> source_;
@@ -247,7 +251,27 @@ Vec3<double> Reader::read_vector(const Attribute& attribute) const {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-Transform Reader::read_operation(const Element& element) const {
+Transform Reader::read_lookat(const Element& element, std::string_view owner) {
+  element.allow_only({"origin", "target", "up"});
+  const Vec3<double> origin = read_vector(element.get("origin")), target = read_vector(element.get("target"));
+  const Vec3<double> up = read_vector(element.get("up"));
+  if (origin == target)
+    throw InputError(element.get("target").value_location,
+                     "target and origin are the same point: no direction");
+  const Transform frame = look_at(origin, target, up);
+  if (is_invertible(frame)) return frame;
+  const Location& where = element.get("up").value_location;
+  if (owner != "camera" || !is_projection_to_z(frame) || up == Vec3<double>{0, 0, 0})
+    throw InputError(where, "up is 0 or parallel to the direction from origin to target");
+  // Nori's own columns, of which a course's test has its reference.
+  warnings_.push_back(format_message(
+      where, "up is parallel to the direction from origin to target",
+      "as in Nori, every ray of this camera runs along its axis, and the whole image shows one point; for a "
+      "picture choose another up"));
+  return frame;
+}
+
+Transform Reader::read_operation(const Element& element, std::string_view owner) {
   if (!contains(operation_tags, element.tag))
     throw InputError(element.location, fmt::format("<{}> is not a part of a transform", element.tag),
                      known_names(element.tag, operation_tags));
@@ -276,24 +300,14 @@ Transform Reader::read_operation(const Element& element) const {
     element.allow_only({"value"});
     return parse_matrix(element.get("value").text, element.get("value").value_location);
   }
-  element.allow_only({"origin", "target", "up"});
-  const Vec3<double> origin = read_vector(element.get("origin")), target = read_vector(element.get("target"));
-  const Vec3<double> up = read_vector(element.get("up"));
-  if (origin == target)
-    throw InputError(element.get("target").value_location,
-                     "target and origin are the same point: no direction");
-  const Transform frame = look_at(origin, target, up);
-  if (!is_invertible(frame))
-    throw InputError(element.get("up").value_location,
-                     "up is 0 or parallel to the direction from origin to target");
-  return frame;
+  return read_lookat(element, owner);
 }
 
-Transform Reader::read_operations(const Element& element) const {
+Transform Reader::read_operations(const Element& element, std::string_view owner) {
   Transform transform;
   // Nori: what is written later acts later, so it stands on the left.
   for (const pugi::xml_node& child : child_elements(element))
-    transform = read_operation(read_element(child)) * transform;
+    transform = read_operation(read_element(child), owner) * transform;
   return transform;
 }
 
@@ -311,7 +325,7 @@ Property::Value Reader::read_value(const Element& element, const Attribute& valu
   return Vec3<double>{numbers[0], numbers[1], numbers[2]};
 }
 
-Property Reader::read_property(const Element& element) const {
+Property Reader::read_property(const Element& element, std::string_view owner) {
   element.allow_only({"name", "value"});
   const Attribute& name = element.get("name");
   if (name.text.empty())
@@ -319,7 +333,7 @@ Property Reader::read_property(const Element& element) const {
   const Attribute* value = element.find("value");
   Property property{name.text, element.tag, {}, name.value_location, element.location};
   if (element.tag == "transform" && !value) {
-    property.value = read_operations(element);
+    property.value = read_operations(element, owner);
   } else {
     if (element.tag == "transform" && !child_elements(element).empty())
       throw InputError(place_of(child_elements(element).front()),
@@ -329,7 +343,7 @@ Property Reader::read_property(const Element& element) const {
     property.value = read_value(element, element.get("value"));
   }
   if (const auto* transform = std::get_if<Transform>(&property.value);
-      transform && !is_invertible(*transform))
+      transform && !is_invertible(*transform) && !(owner == "camera" && is_projection_to_z(*transform)))
     throw InputError(
         property.value_location, fmt::format("the transform '{}' cannot be inverted", property.name),
         "check it for a scale of 0, for equal rows or columns, and for numbers too large or too small");
@@ -364,7 +378,7 @@ Object Reader::read_object(const Element& element, int level) {
   for (const pugi::xml_node& node : nodes) {
     const Element child = read_element(node);
     if (contains(property_tags, child.tag)) {
-      Property property = read_property(child);
+      Property property = read_property(child, element.tag);
       const auto [first, is_new] = stated.emplace(property.name, property.name_location);
       if (!is_new)
         throw InputError(property.name_location,
@@ -379,8 +393,9 @@ Object Reader::read_object(const Element& element, int level) {
     } else if (contains(operation_tags, child.tag)) {
       throw InputError(child.location, fmt::format("<{}> may stand only inside <transform>", child.tag));
     } else {
+      const std::string hint = foreign_tag_hint(child.tag);
       throw InputError(child.location, fmt::format("unknown tag <{}>", child.tag),
-                       known_names(child.tag, tags_inside(element.tag)));
+                       hint.empty() ? known_names(child.tag, tags_inside(element.tag)) : hint);
     }
     // What is read goes at once: for small shapes the nodes are larger than the objects made of them.
     parent.remove_child(node);
@@ -388,7 +403,7 @@ Object Reader::read_object(const Element& element, int level) {
   return object;
 }
 
-SceneDesc Reader::read(std::optional<Dialect> dialect) {
+SceneDesc Reader::read(std::optional<Dialect> dialect, const std::optional<FolderSettings>& folder) {
   const Element root = read_element(load_root());
   if (root.tag != "scene" && root.tag != "test")
     throw InputError(root.location, fmt::format("the root element is <{}>", root.tag),
@@ -407,10 +422,14 @@ SceneDesc Reader::read(std::optional<Dialect> dialect) {
     scene.dialect = *find_dialect(stated->text);
     scene.dialect_reason =
         fmt::format("stated by the root element, line {}", line_and_column(stated->value_location).line);
+  } else if (folder && folder->dialect) {
+    scene.dialect = *folder->dialect;
+    scene.dialect_reason = fmt::format("stated by {}", folder->file.string());
   } else {
     const DialectGuess guess = recognize_dialect(scene.root);
     scene.dialect = guess.dialect;
     scene.dialect_reason = guess.reason;
+    scene.is_dialect_told = guess.is_told;
   }
   scene.warnings = std::move(warnings_);
   return scene;
@@ -419,7 +438,9 @@ SceneDesc Reader::read(std::optional<Dialect> dialect) {
 }  // namespace
 
 SceneDesc read_nori_xml(const std::filesystem::path& file, std::optional<Dialect> dialect) {
-  SceneDesc scene = Reader(read_text_file(file)).read(dialect);
+  const std::optional<FolderSettings> folder = folder_settings_of(file);
+  SceneDesc scene = Reader(read_text_file(file)).read(dialect, folder);
+  if (folder) scene.settings_file = folder->file;
   scene.directory = file.parent_path();
   return scene;
 }

@@ -10,10 +10,10 @@
 namespace etendue {
 
 /// Reads a scene or test file (UTF-8, UTF-16, UTF-32 or declared ISO-8859-1; at most 256 MiB; 64 elements
-/// deep). The dialect is, first of these: `dialect`; the attribute `dialect="..."` of the root; what the
-/// names in the file tell (recognize_dialect). Children of a scene that have no part in its image
-/// (evaluators, previewers, denoisers) are left out, with a warning. Throws InputError for anything that is
-/// not well-formed or not of the format.
+/// deep). The dialect is, first of these: `dialect`; the attribute `dialect="..."` of the root; what
+/// an etendue.json says (folder_settings.h); what the names in the file tell (recognize_dialect). Children of
+/// a scene that have no part in its image (evaluators, previewers, denoisers) are left out, with a warning.
+/// Throws InputError for anything that is not well-formed or not of the format.
 SceneDesc read_nori_xml(const std::filesystem::path& file, std::optional<Dialect> dialect = std::nullopt);
 
 }  // namespace etendue

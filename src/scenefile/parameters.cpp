@@ -1,5 +1,6 @@
 #include "scenefile/parameters.h"
 
+#include "scenefile/foreign_names.h"
 #include "scenefile/value_text.h"
 
 #include <algorithm>
@@ -158,10 +159,17 @@ Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<U
         std::find_if(plugin.parameters.begin(), plugin.parameters.end(),
                      [&](const Parameter& candidate) { return candidate.name == property.name; });
     if (parameter == plugin.parameters.end()) {
+      const ForeignKey* foreign = find_foreign_key(plugin.family, object.type, property.name);
+      if (foreign && foreign->is_refused)
+        throw InputError(property.name_location,
+                         fmt::format("'{}' of {} is not known here, and would change the image",
+                                     property.name, label(object)),
+                         foreign->hint);
       unread.push_back({format_message(
           property.name_location, fmt::format("unknown key '{}' of {}", property.name, label(object)),
-          plugin.parameters.empty() ? "it has no keys at all; was this meant for another element?"
-                                    : known_names(property.name, names_of(plugin.parameters)))});
+          foreign                     ? std::string(foreign->hint)
+          : plugin.parameters.empty() ? "it has no keys at all; was this meant for another element?"
+                                      : known_names(property.name, names_of(plugin.parameters)))});
       continue;
     }
     if (is_stated(property.name))
@@ -188,10 +196,14 @@ void Parameters::read_children(const Plugin& plugin) {
   std::vector<std::string> families = plugin.child_families;
   if (takes_textures) families.emplace_back("texture");
   for (const Object& child : object_->children) {
-    if (std::find(families.begin(), families.end(), child.family) == families.end())
-      throw InputError(
-          child.location, fmt::format("<{}> has no place inside <{}>", child.family, object_->family),
-          families.empty() ? "nothing may stand in there but its keys" : known_names(child.family, families));
+    if (std::find(families.begin(), families.end(), child.family) == families.end()) {
+      const std::string hint = foreign_tag_hint(child.family);
+      throw InputError(child.location,
+                       fmt::format("<{}> has no place inside <{}>", child.family, object_->family),
+                       !hint.empty()      ? hint
+                       : families.empty() ? "nothing may stand in there but its keys"
+                                          : known_names(child.family, families));
+    }
     if (takes_textures && child.family == "texture") add_texture(child, plugin);
   }
 }
@@ -260,8 +272,9 @@ Colorf nonnegative_color(const Parameters& parameters, std::string_view name) {
 }
 
 InputError unknown_plugin(const Object& object, const std::vector<Plugin>& known) {
+  const std::string hint = foreign_plugin_hint(object.family, object.type);
   return {object.type_location, fmt::format("unknown {} '{}'", object.family, object.type),
-          known_names(object.type, names_of(known))};
+          (hint.empty() ? "" : hint + "; ") + known_names(object.type, names_of(known))};
 }
 
 InputError unknown_plugin(std::string_view family, std::string_view name, const std::vector<Plugin>& known) {

@@ -40,7 +40,9 @@ struct SceneDesc {
   Dialect dialect = Dialect::nori_2012;
   std::string dialect_reason;  ///< Why this dialect, for the log.
   std::filesystem::path directory;
-  std::vector<std::string> warnings;  ///< Complete messages: what was left out of `root`.
+  std::vector<std::string> warnings;      ///< Complete messages: what was left out of `root`.
+  bool is_dialect_told = true;            ///< False where it is only assumed.
+  std::filesystem::path settings_file{};  ///< The etendue.json that was read; empty: there is none.
 };
 
 }  // namespace etendue

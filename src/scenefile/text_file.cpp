@@ -1,5 +1,7 @@
 #include "scenefile/text_file.h"
 
+#include "scenefile/file_format.h"
+
 #include <algorithm>
 #include <boost/locale/utf.hpp>
 #include <cerrno>
@@ -122,6 +124,9 @@ std::string latin1_to_utf8(std::string_view bytes) {
 
 std::shared_ptr<const SourceFile> read_text_file(const std::filesystem::path& file, std::size_t most_bytes) {
   std::string bytes = read_bytes(file, most_bytes);
+  if (const std::string_view format = format_of_content(bytes); !format.empty())
+    fail(file, fmt::format("this is {}", format),
+         "read here is the XML of the Nori family, as docs/scene_format.md has it");
   const Encoding encoding = detect_encoding(bytes);
   const auto source =
       std::make_shared<SourceFile>(SourceFile{file.string(), bytes.substr(encoding.mark_bytes)});

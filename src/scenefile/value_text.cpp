@@ -120,7 +120,27 @@ std::vector<double> parse_reals(std::string_view text, const Location& where,
   return numbers;
 }
 
+namespace {
+
+/// "r, g, b" linear of "#rrggbb"; empty where it is not of this form.
+std::string linear_of_hex(std::string_view text) {
+  unsigned int value = 0;
+  if (text.size() != 7 || text[0] != '#') return {};
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, value, 16);
+  if (error != std::errc() || end != text.data() + 7) return {};
+  const auto linear = [&](int shift) {  // IEC 61966-2-1
+    const double encoded = (value >> shift & 0xff) / 255.0;
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+  };
+  return fmt::format("{:.4g}, {:.4g}, {:.4g}", linear(16), linear(8), linear(0));
+}
+
+}  // namespace
+
 Colorf parse_color(std::string_view text, const Location& where) {
+  if (const std::string linear = linear_of_hex(text); !linear.empty())
+    throw InputError(where, fmt::format("'{}' is a colour of sRGB; colours here are linear", text),
+                     fmt::format("write value=\"{}\" for it", linear));
   const std::vector<double> numbers = parse_reals(text, where, {1, 3});
   Colorf color{static_cast<float>(numbers.front()), static_cast<float>(numbers[numbers.size() / 2]),
                static_cast<float>(numbers.back())};

@@ -162,7 +162,7 @@ std::string name_of(Kind kind) { return kind == Kind::ggx ? "ggx" : "beckmann"; 
 Model microfacet(float alpha, const Colorf& kd, float eta) {
   Microfacet model;
   model.kd = kd;
-  model.ks = 1 - std::max({kd.r, kd.g, kd.b});
+  model.ks = model.coat_probability = 1 - std::max({kd.r, kd.g, kd.b});
   model.distribution = {Kind::beckmann, alpha};
   model.indices = {eta, 1 / eta};
   return {fmt::format("microfacet {}, ks {}", alpha, model.ks), model, false, 1, 1e-3};
@@ -172,6 +172,25 @@ Model roughconductor(Kind kind, float alpha) {
   return {fmt::format("roughconductor {} {}", name_of(kind), alpha),
           RoughConductor{{kind, alpha}, {0.2f, 0.92f, 1.1f}, {3.9f, 2.45f, 2.14f}, {1, 1, 1}}, false, 1,
           2e-3};
+}
+
+Model schlick_conductor(float alpha) {
+  RoughConductor model{{Kind::beckmann, alpha}, {}, {}};
+  model.fresnel_term = RoughConductor::Fresnel::schlick;
+  model.r0 = {0.9f, 0.6f, 0.3f};
+  return {fmt::format("roughconductor {} of Schlick", alpha), model, false, 1, 2e-3};
+}
+
+Model roughsubstrate(float alpha, const Colorf& kd, float eta) {
+  Microfacet model;
+  model.kd = kd;
+  model.ks = 1;
+  model.coat_probability = 0.3f;
+  model.distribution = {Kind::beckmann, alpha};
+  model.indices = {eta, 1 / eta};
+  model.base = Microfacet::Base::under_coat;
+  model.reflectance_along_normal = (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1));
+  return {fmt::format("roughsubstrate {}", alpha), model, false, 1, 1e-3};
 }
 
 Model roughdielectric(Kind kind, float alpha, float eta) {
@@ -188,6 +207,9 @@ std::vector<Model> models() {
   all.push_back(microfacet(0.1f, {0, 0, 0}, 1.3f));
   all.push_back(microfacet(0.3f, {0.2f, 0.1f, 0.6f}, 1.5f));
   all.push_back(microfacet(0.6f, {0.4f, 0.2f, 0.3f}, 1.4f));
+  all.push_back(roughsubstrate(0.1f, {0.8f, 0.3f, 0.2f}, 1.5f));
+  all.push_back(roughsubstrate(0.5f, {0.1f, 0.9f, 0}, 1.3f));
+  for (const float alpha : {0.1f, 0.5f}) all.push_back(schlick_conductor(alpha));
   for (const Kind kind : {Kind::beckmann, Kind::ggx}) {
     for (const float alpha : {0.02f, 0.1f, 0.5f}) all.push_back(roughconductor(kind, alpha));
     for (const float alpha : {0.05f, 0.2f, 1.0f}) all.push_back(roughdielectric(kind, alpha, 1.5f));

@@ -73,7 +73,7 @@ TEST(Disk, BoundsHoldItTightly) {
 TEST(SurfaceUv, OfSpheres) {
   const auto uv = [](double x, double y, double z) {
     const auto n = normalize(Vec3<double>{x, y, z});
-    return sphere_uv<float>({float(n.x), float(n.y), float(n.z)});
+    return sphere_uv<float>({float(n.x), float(n.y), float(n.z)}, 0.0f);
   };
   EXPECT_EQ(uv(1, 0, 0), (Vec2f{0, 0.5f}));
   EXPECT_EQ(uv(0, 1, 0), (Vec2f{0.25f, 0.5f}));
@@ -81,11 +81,13 @@ TEST(SurfaceUv, OfSpheres) {
   EXPECT_EQ(uv(0, -1, 0), (Vec2f{0.75f, 0.5f}));
   EXPECT_EQ(uv(0, 0, 1), (Vec2f{0, 0}));
   EXPECT_EQ(uv(0, 0, -1), (Vec2f{0, 1}));
+  EXPECT_EQ(sphere_uv<float>({0, 1, 0}, 0.5f), (Vec2f{0.75f, 0.5f}));
+  EXPECT_EQ(sphere_uv<float>({0, -1, 0}, 0.5f), (Vec2f{0.25f, 0.5f}));
   std::mt19937 engine(4);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 10000; ++i) {
     const Vec3<double> n = normalize(Vec3<double>{normal(engine), normal(engine), normal(engine)});
-    const Vec2f at = sphere_uv<float>({float(n.x), float(n.y), float(n.z)});
+    const Vec2f at = sphere_uv<float>({float(n.x), float(n.y), float(n.z)}, 0.0f);
     EXPECT_TRUE(at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1);
     const double phi = turn * at.x, theta = 0.5 * turn * at.y;
     EXPECT_NEAR(std::sin(theta) * std::cos(phi), n.x, 2e-6);

@@ -331,7 +331,8 @@ TEST_F(NoriXml, TellsTheDialectByNamesThatOneGenerationHas) {
   const auto guess = [&](const std::string& inside) {
     const SceneDesc scene = read("<scene>\n" + inside + "</scene>");
     EXPECT_THAT(scene.dialect_reason,
-                scene.dialect == Dialect::nori ? HasSubstr("--dialect nori-eth") : HasSubstr("in line 2"));
+                scene.dialect == Dialect::nori ? HasSubstr("nothing in the file") : HasSubstr("in line 2"));
+    EXPECT_EQ(scene.is_dialect_told, scene.dialect != Dialect::nori);
     return scene.dialect;
   };
   for (const char* inside :
@@ -351,6 +352,68 @@ TEST_F(NoriXml, TellsTheDialectByNamesThatOneGenerationHas) {
         "<camera type='perspective'><float name='apertureRadius' value='1'/></camera>"})
     EXPECT_EQ(guess(inside), Dialect::nori) << inside;
   EXPECT_EQ(guess("<shape type='sphere'/>\n<!-- <luminaire> -->"), Dialect::nori);
+}
+
+TEST_F(NoriXml, AFolderTellsTheDialectOfAllItsScenes) {
+  const auto settings = [&](const std::string& text) {
+    std::ofstream(directory_ / "etendue.json", std::ios::binary | std::ios::trunc) << text;
+  };
+  settings("{\"dialect\": \"nori-eth\"}");
+  const SceneDesc scene = read("<scene/>");
+  EXPECT_EQ(scene.dialect, Dialect::nori_eth);
+  EXPECT_THAT(scene.dialect_reason, HasSubstr("etendue.json"));
+  EXPECT_TRUE(scene.is_dialect_told);
+  EXPECT_EQ(scene.settings_file.filename(), "etendue.json");
+  // It beats what names tell; the file's own statement and the command line beat it.
+  EXPECT_EQ(read("<scene><integrator type='mipath'/></scene>").dialect, Dialect::nori_eth);
+  EXPECT_EQ(read("<scene dialect='nori-2012'/>").dialect, Dialect::nori_2012);
+  EXPECT_EQ(read_nori_xml(write("<scene/>"), Dialect::nori).dialect, Dialect::nori);
+  fs::create_directories(directory_ / "below" / "deep");
+  std::ofstream(directory_ / "below" / "deep" / "s.xml") << "<scene/>";
+  EXPECT_EQ(read_nori_xml(directory_ / "below" / "deep" / "s.xml").dialect, Dialect::nori_eth);
+  settings("{\"dialect\": \"nori-etH\"}");
+  EXPECT_THAT(error("<scene/>"), HasSubstr("did you mean 'nori-eth'?"));
+  settings("{\"dialects\": \"nori\"}");
+  EXPECT_THAT(error("<scene/>"), HasSubstr("unknown key 'dialects'"));
+  settings("{\"dialect\": 1}");
+  EXPECT_THAT(error("<scene/>"), HasSubstr("'dialect' must be text"));
+  settings("dialect = nori");
+  EXPECT_THAT(error("<scene/>"), HasSubstr("not well-formed JSON"));
+  settings("{");
+  EXPECT_THAT(error("<scene/>"), HasSubstr("not well-formed JSON"));
+  settings("[]");
+  EXPECT_THAT(error("<scene/>"), HasSubstr("not a JSON object"));
+}
+
+TEST_F(NoriXml, NamesTheFormatOfWhatIsNoXml) {
+  for (const auto& [text, name] : std::vector<std::pair<std::string, std::string>>{
+           {"# made by hand\nLookAt 0 0 5  0 0 0  0 1 0\n", "a pbrt scene"},
+           {"Film \"rgb\"\n", "a pbrt scene"},
+           {"{\"asset\": {\"version\": \"2.0\"}}", "a glTF scene"},
+           {std::string("glTF\x02\0\0\0", 8), "a glTF scene"},
+           {"#usda 1.0\n", "a USD scene"},
+           {std::string("BLENDER-v300\0", 13), "a Blender file"},
+           {"scene.camera.type = \"perspective\"\n", "a LuxCore scene"},
+           {"#version 3.7;\nglobal_settings {}\n", "a POV-Ray scene"},
+           {"// a comment\ncamera { location 0 }\n", "a POV-Ray scene"},
+           {"v 0 0 0\n", "an OBJ mesh"},
+           {"ply\nformat ascii 1.0\n", "a PLY mesh"}})
+    EXPECT_THAT(error(text), HasSubstr("this is " + name)) << text;
+}
+
+TEST_F(NoriXml, ACameraMayLookAlongItsUp) {
+  const std::string lookat =
+      "<transform name='toWorld'><lookat origin='0,0,5' target='0,0,1' up='0,0,1'/></transform>";
+  const SceneDesc scene = read("<scene><camera type='perspective'>" + lookat + "</camera></scene>");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("up is parallel"));
+  const auto& t = std::get<Transform>(scene.root.children[0].properties[0].value);
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_EQ(t.m[row][0], 0);
+    EXPECT_EQ(t.m[row][1], 0);
+  }
+  EXPECT_EQ(t.m[2][2], -1);
+  EXPECT_THAT(error("<scene><shape type='sphere'>" + lookat + "</shape></scene>"), HasSubstr("up is 0 or"));
 }
 
 TEST_F(NoriXml, AFileOfTestsHasOneDialect) {

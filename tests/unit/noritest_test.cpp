@@ -5,7 +5,8 @@
 // file's own level of 0.01 where the samples have no variance), fixed seeds.
 // Seen to fail when: Diffuse's samples weigh 1 % too much; its density is 1 % too large; Phong's density
 // takes n for n + 1; the pixel covers only one pixel of the film; every task takes the same seed; cells are
-// even in theta under every dialect.
+// even in theta under every dialect; samples of a phase function are turned to a fixed direction; R0 is
+// rendered as copper; the base under a coat loses nothing to the reflection along the normal.
 #include "noritest/noritest.h"
 
 #include "render/thread_limit.h"
@@ -236,6 +237,43 @@ TEST_F(NoriTest, SamplesOfBsdfsFollowTheirDensity) {
     }
     EXPECT_EQ(results[7].detail, "direction 3");
   }
+}
+
+TEST_F(NoriTest, SamplesOfPhaseFunctionsFollowTheirDensity) {
+  const std::vector<CaseResult> results = run(
+      "<test type='chi2test'><phase type='hg'><float name='g' value='-0.4'/></phase><phase type='isotropic'/>"
+      "<bsdf type='diffuse'/></test>");
+  ASSERT_EQ(results.size(), 15u);
+  for (const CaseResult& result : results) EXPECT_GT(result.p_value, surely_right) << result.problem;
+  EXPECT_EQ(results[0].subject, "phase");
+  EXPECT_EQ(results[0].type, "hg");
+  EXPECT_EQ(results[14].subject, "bsdf");
+}
+
+// Integrals over the hemisphere by the midpoint rule, of the formulas as docs/scene_format.md has them.
+TEST_F(NoriTest, RoughSurfacesOfZaragoza) {
+  const std::string angles_of_two = "<string name='angles' value='0, 50'/>";
+  for (const auto& [references, bsdf] : std::vector<std::pair<std::string, std::string>>{
+           {"0.45324, 0.42068",
+            "<bsdf type='roughconductor'><color name='R0' value='.2 .5 .8'/><float name='alpha' "
+            "value='.4'/></bsdf>"},
+           {"0.42428, 0.39593",
+            "<bsdf type='roughsubstrate'><color name='kd' value='.6 .4 .1'/><float name='alpha' "
+            "value='.25'/><float name='intIOR' value='1.4'/><float name='extIOR' value='1'/></bsdf>"}})
+    for (const CaseResult& result : run(ttest(references, angles_of_two + bsdf)))
+      EXPECT_GT(result.p_value, surely_right) << bsdf << result.mean;
+}
+
+// Every ray runs along the axis, to the pole of the ball: |n| there is (0, 0, 1).
+TEST_F(NoriTest, ACameraWhoseUpIsItsDirectionSeesOnePoint) {
+  const CaseResult result =
+      run(ttest("0.072169",
+                "<scene><integrator type='normals'/><camera type='perspective'><integer name='width' "
+                "value='3'/><integer name='height' value='2'/><float name='fov' value='70'/><transform "
+                "name='toWorld'><lookat origin='0,0,9' target='0,0,2' up='0,0,1'/></transform></camera>"
+                "<shape type='sphere'/></scene>"))[0];
+  EXPECT_TRUE(result.is_passed);
+  EXPECT_NEAR(result.mean, 0.072169, 1e-7);
 }
 
 TEST_F(NoriTest, ALobeTooNarrowForTheCellsIsNoMisfit) {

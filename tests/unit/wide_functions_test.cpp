@@ -97,7 +97,7 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   all["square_to_uniform_disk"] = {{unit()}, 4, 1};
   // sqrt(1 - z^2) near a pole.
   all["square_to_uniform_sphere"] = {{unit()}, 12, 1};
-  all["sphere_uv"] = {{}, 4, 1, 1};
+  all["sphere_uv"] = {{real(0, 0.9f, {0, 0.5f})}, 4, 1, 1};
   all["disk_uv"] = {{real(-1, 1, {0, 1, -1})}, 4, 1};
   all["Frame"] = {{real(-1, 1)}, 4, 1, 2};
   all["sample_offset_px"] = {{unit()}, 3, 1};

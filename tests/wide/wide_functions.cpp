@@ -121,7 +121,10 @@ void uniform_cone_pdf(const Scene&, Packet& p) { p.give(uniform_cone_pdf_solid_a
 void uniform_disk(const Scene&, Packet& p) { p.give(square_to_uniform_disk(p.square())); }
 void uniform_sphere(const Scene&, Packet& p) { p.give(square_to_uniform_sphere(p.square())); }
 
-void uv_of_sphere(const Scene&, Packet& p) { p.give(sphere_uv(p.vec())); }
+void uv_of_sphere(const Scene&, Packet& p) {
+  const auto ng = p.vec();
+  p.give(sphere_uv(ng, p.real()));
+}
 void uv_of_disk(const Scene&, Packet& p) {
   const F x = p.real(), y = p.real();
   p.give(disk_uv(Vec2<F>{x, y}));
@@ -258,7 +261,7 @@ constexpr WideFunction functions[]{
     {"uniform_cone_pdf", 1, 1, Words::floats, run<uniform_cone_pdf>},
     {"square_to_uniform_disk", 2, 2, Words::floats, run<uniform_disk>},
     {"square_to_uniform_sphere", 2, 3, Words::floats, run<uniform_sphere>},
-    {"sphere_uv", 3, 2, Words::floats, run<uv_of_sphere>},
+    {"sphere_uv", 4, 2, Words::floats, run<uv_of_sphere>},
     {"disk_uv", 2, 2, Words::floats, run<uv_of_disk>},
     {"Frame", 6, 12, Words::floats, run<frame>},
     {"sample_offset_px", 1, 1, Words::floats, run<filter_offset>},
