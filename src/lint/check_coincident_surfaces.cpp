@@ -1,0 +1,320 @@
+#include "base/frame.h"
+#include "geometry/bounds.h"
+#include "lint/box_tree.h"
+#include "lint/checks.h"
+#include "lint/flat_overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+#include <unordered_map>
+
+namespace etendue {
+
+namespace {
+
+/// A triangle of all, or a disk: `triangle` is -1.
+struct Piece {
+  std::int32_t geometry, triangle;
+};
+
+/// Two shapes with a place that is on both.
+struct Pair {
+  std::int32_t a, b;  ///< a <= b.
+  bool is_opposite;
+  Vec3<double> middle, ng;  ///< Of the place; the normal is 0 of spheres.
+};
+
+Box widened(const Box& box) {
+  const float largest = std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
+                                  std::abs(box.high.x), std::abs(box.high.y), std::abs(box.high.z)});
+  const auto by = float(rounding_of(largest));
+  return {box.low - Vec3f{by, by, by}, box.high + Vec3f{by, by, by}};
+}
+
+class PairSearch {
+ public:
+  PairSearch(const Geometry& geometry, const std::vector<bool>& is_sensitive)
+      : geometry_(geometry), is_sensitive_(is_sensitive) {}
+
+  std::vector<Pair> find() {
+    std::vector<Piece> small,
+        rest;  // Of sensitive shapes that are no large meshes; all that is compared so far.
+    std::vector<std::int32_t> large;
+    for (std::int32_t id = 0; id < geometry_.count(); ++id)
+      if (!is_sensitive_[std::size_t(id)])
+        append_pieces(id, rest);
+      else if (geometry_.triangles[std::size_t(id)] > most_within)
+        large.push_back(id);
+      else
+        append_pieces(id, small);
+    if (!small.empty()) {
+      join(small, rest);
+      join_with_itself(small);
+    }
+    rest.insert(rest.end(), small.begin(), small.end());
+    for (const std::int32_t id : large) {
+      std::vector<Piece> mesh;
+      append_pieces(id, mesh);
+      join(mesh, rest);
+      find_folded(mesh);
+      rest.insert(rest.end(), mesh.begin(), mesh.end());
+    }
+    find_spheres();
+    return std::move(pairs_);
+  }
+
+ private:
+  /// Larger meshes are not compared with themselves but for triangles with the same corners: their
+  /// neighbours are too many.
+  static constexpr std::int32_t most_within = 4096;
+  static constexpr std::size_t most_pairs = 256;
+
+  void append_pieces(std::int32_t id, std::vector<Piece>& pieces) const {
+    const auto at = std::size_t(id);
+    if (geometry_.disk[at] >= 0) pieces.push_back({id, -1});
+    for (std::int32_t k = 0; k < geometry_.triangles[at]; ++k)
+      pieces.push_back({id, geometry_.first_triangle[at] + k});
+  }
+
+  Box box_of_piece(const Piece& piece) const {
+    if (piece.triangle < 0)
+      return widened(box_of(geometry_.disks[std::size_t(geometry_.disk[std::size_t(piece.geometry)])]));
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k)
+      box.include(geometry_.positions[std::size_t(geometry_.indices[3 * std::size_t(piece.triangle) + k])]);
+    return widened(box);
+  }
+
+  FlatPiece flat(const Piece& piece) const {
+    return piece.triangle < 0
+               ? disk_piece(geometry_.disks[std::size_t(geometry_.disk[std::size_t(piece.geometry)])])
+               : triangle_piece(geometry_, std::size_t(piece.triangle));
+  }
+
+  void note(std::int32_t a, std::int32_t b, bool is_opposite, const Vec3<double>& middle,
+            const Vec3<double>& ng) {
+    if (known_.emplace(std::min(a, b), std::max(a, b)).second)
+      pairs_.push_back({std::min(a, b), std::max(a, b), is_opposite, middle, ng});
+  }
+
+  void compare(const Piece& a, const Piece& b) {
+    if (pairs_.size() >= most_pairs) return;
+    if (known_.count({std::min(a.geometry, b.geometry), std::max(a.geometry, b.geometry)}) > 0) return;
+    const FlatPiece piece = flat(a);
+    if (const Overlap overlap = overlap_of(piece, flat(b)); overlap.is_there)
+      note(a.geometry, b.geometry, overlap.is_opposite, overlap.middle, piece.ng);
+  }
+
+  BoxTree tree_over(const std::vector<Piece>& pieces) const {
+    std::vector<Box> boxes;
+    boxes.reserve(pieces.size());
+    for (const Piece& piece : pieces) boxes.push_back(box_of_piece(piece));
+    return BoxTree(boxes);
+  }
+
+  /// Each of the one with each of the other, by a tree over the fewer.
+  void join(const std::vector<Piece>& a, const std::vector<Piece>& b) {
+    const std::vector<Piece>&few = a.size() < b.size() ? a : b, &many = a.size() < b.size() ? b : a;
+    const BoxTree tree = tree_over(few);
+    for (const Piece& piece : many)
+      tree.for_each_meeting(box_of_piece(piece), [&](std::uint32_t k) { compare(piece, few[k]); });
+  }
+
+  void join_with_itself(const std::vector<Piece>& pieces) {
+    const BoxTree tree = tree_over(pieces);
+    for (std::uint32_t i = 0; i < pieces.size(); ++i)
+      tree.for_each_meeting(box_of_piece(pieces[i]), [&](std::uint32_t k) {
+        if (k > i) compare(pieces[i], pieces[k]);
+      });
+  }
+
+  /// Two triangles of one large mesh with the same corners.
+  void find_folded(const std::vector<Piece>& mesh) {
+    std::size_t size = 1;
+    while (size < 2 * mesh.size()) size *= 2;
+    std::vector<std::uint32_t> slots(size, 0);  // The piece's number from 1; 0: empty.
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+      std::size_t slot = corners_hash(mesh[i]) & (size - 1);
+      for (; slots[slot] != 0; slot = (slot + 1) & (size - 1)) {
+        const Piece& other = mesh[slots[slot] - 1];
+        if (corners_of(other) == corners_of(mesh[i])) return compare(mesh[i], other);
+      }
+      slots[slot] = i + 1;
+    }
+  }
+
+  const Vec3f& corner(const Piece& piece, std::size_t k) const {
+    return geometry_.positions[std::size_t(geometry_.indices[3 * std::size_t(piece.triangle) + k])];
+  }
+
+  std::array<std::array<float, 3>, 3> corners_of(const Piece& piece) const {
+    std::array<std::array<float, 3>, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3f& p = corner(piece, k);
+      corners[k] = {p.x, p.y, p.z};
+    }
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  }
+
+  /// The same whatever their order.
+  std::size_t corners_hash(const Piece& piece) const {
+    const auto bits = [](float x) {
+      return std::uint64_t(std::bit_cast<std::uint32_t>(x + 0.0f));
+    };  // Of -0, 0.
+    std::uint64_t sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3f& p = corner(piece, k);
+      const std::uint64_t mixed =
+          (bits(p.x) << 32 | bits(p.y)) * 0x9e3779b97f4a7c15u ^ bits(p.z) * 0xbf58476d1ce4e5b9u;
+      sum += (mixed ^ mixed >> 29) * 0x94d049bb133111ebu;
+    }
+    return std::size_t(sum >> 20);
+  }
+
+  /// Spheres of one centre and radius.
+  void find_spheres() {
+    std::vector<std::int32_t> ids;
+    for (std::int32_t id = 0; id < geometry_.count(); ++id)
+      if (geometry_.sphere[std::size_t(id)] >= 0) ids.push_back(id);
+    const auto sphere = [&](std::int32_t id) -> const Sphere& {
+      return geometry_.spheres[std::size_t(geometry_.sphere[std::size_t(id)])];
+    };
+    std::sort(ids.begin(), ids.end(), [&](std::int32_t a, std::int32_t b) {
+      return std::pair(sphere(a).center.x, a) < std::pair(sphere(b).center.x, b);
+    });
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      for (std::size_t k = i + 1; k < ids.size() && pairs_.size() < most_pairs; ++k) {
+        const Sphere &a = sphere(ids[i]), &b = sphere(ids[k]);
+        const Vec3f apart = b.center - a.center;
+        const double rounding = rounding_of(
+            std::max({std::abs(a.center.x), std::abs(a.center.y), std::abs(a.center.z)}) + a.radius);
+        if (apart.x > rounding) break;
+        if (!is_sensitive_[std::size_t(ids[i])] && !is_sensitive_[std::size_t(ids[k])]) continue;
+        if (std::sqrt(double(length_sq(apart))) + std::abs(double(a.radius) - b.radius) <= rounding)
+          note(ids[i], ids[k], false, {a.center.x, a.center.y, a.center.z}, {0, 0, 0});
+      }
+  }
+
+  const Geometry& geometry_;
+  const std::vector<bool>& is_sensitive_;
+  std::vector<Pair> pairs_;
+  std::set<std::pair<std::int32_t, std::int32_t>> known_;
+};
+
+std::string place_of(const Location& where) {
+  const LineColumn at = line_and_column(where);
+  return fmt::format("line {}", at.line);
+}
+
+/// Whether light or the camera sees the place from the side that `ng` points to, as neither does inside of
+/// solids.
+bool is_seen_from(const LintContext& context, const Vec3f& place, const Vec3f& ng) {
+  const Vec3f from = place + ng * ray_clearance(place, 0.0f);
+  if (dot(context.scene.camera.origin - from, ng) > 0 &&
+      is_visible(context.scene, from, context.scene.camera.origin))
+    return true;
+  ProbeNumbers numbers(9);
+  const Frame<float> frame(ng);
+  for (int k = 0; k < 32; ++k)
+    if (const auto hit = probe(
+            context.scene, {from, frame.world_from_local(square_to_cosine_hemisphere(numbers.two_units()))});
+        hit && context.can_be_lit(*hit))
+      return true;
+  return false;
+}
+
+void report(const LintContext& context, const Pair& pair, Findings& findings) {
+  const Vec3f place{float(pair.middle.x), float(pair.middle.y), float(pair.middle.z)},
+      ng{float(pair.ng.x), float(pair.ng.y), float(pair.ng.z)};
+  if (length_sq(ng) > 0 && !is_seen_from(context, place, ng) && !is_seen_from(context, place, -ng)) return;
+  const Geometry& geometry = context.scene.geometry;
+  const bool is_first = geometry.light[std::size_t(pair.a)] >= 0,
+             is_second = geometry.light[std::size_t(pair.b)] >= 0;
+  const std::int32_t one = is_first || !is_second ? pair.a : pair.b, other = one == pair.a ? pair.b : pair.a;
+  const ScenePlaces::Shape &shape = context.places.shapes[std::size_t(one)],
+                           &in = context.places.shapes[std::size_t(other)];
+  const std::string where =
+      fmt::format("about {:.4g} {:.4g} {:.4g}", pair.middle.x, pair.middle.y, pair.middle.z);
+  const std::string second =
+      one == other ? "itself" : fmt::format("the {} ({})", in.name, place_of(in.where));
+  const std::string apart = "move them apart by more than a ten-thousandth of their distance from the camera";
+  if (is_first && is_second)
+    findings.add(
+        "lights-in-one-place", shape.where,
+        fmt::format("the light {} lies in one place with {}{}, {}: which of the two a ray meets is chance",
+                    shape.name, second, pair.is_opposite ? ", back to back" : "", where),
+        pair.is_opposite ? "remove one, and let the other shine from both sides: <boolean name=\"twosided\" "
+                           "value=\"true\"/> in its light; or " +
+                               apart
+                         : "remove one of them, or " + apart);
+  else if (is_first || is_second)
+    findings.add(
+        "light-in-surface", shape.where,
+        fmt::format("the light {} lies in one plane with {}, {}: which of the two a ray meets is chance, and "
+                    "integrators disagree",
+                    shape.name, second, where),
+        apart + ", or cut a hole for the light");
+  else
+    findings.add("glass-in-surface", shape.where,
+                 fmt::format("the {} lies in one place with {}, {}: which of the two a ray meets is chance",
+                             shape.name, second, where),
+                 "let one reach into the other, or leave a gap");
+}
+
+/// Where it matters which of two surfaces in one place is met first.
+std::vector<bool> sensitive_shapes(const LintContext& context) {
+  const Geometry& geometry = context.scene.geometry;
+  std::vector<bool> are;
+  for (std::size_t id = 0; id < std::size_t(geometry.count()); ++id)
+    are.push_back(geometry.light[id] >= 0 ||
+                  context.materials[std::size_t(geometry.material[id])].is_two_sided);
+  return are;
+}
+
+}  // namespace
+
+void check_coincident_surfaces(const LintContext& context, Findings& findings) {
+  const std::vector<bool> sensitive = sensitive_shapes(context);
+  for (const Pair& pair : PairSearch(context.scene.geometry, sensitive).find())
+    report(context, pair, findings);
+}
+
+void check_repeated_shapes(const LintContext& context, Findings& findings) {
+  const Geometry& geometry = context.scene.geometry;
+  const std::vector<bool> sensitive = sensitive_shapes(context);
+  // The same corners of the same triangles; sensitive ones are told of already.
+  const auto are_equal = [&](std::size_t a, std::size_t b) {
+    if (geometry.triangles[a] != geometry.triangles[b]) return false;
+    for (std::size_t k = 0; k < 3 * std::size_t(geometry.triangles[a]); ++k)
+      if (!(geometry
+                .positions[std::size_t(geometry.indices[3 * std::size_t(geometry.first_triangle[a]) + k])] ==
+            geometry
+                .positions[std::size_t(geometry.indices[3 * std::size_t(geometry.first_triangle[b]) + k])]))
+        return false;
+    return true;
+  };
+  std::unordered_map<std::uint64_t, std::size_t> first;
+  for (std::size_t id = 0; id < std::size_t(geometry.count()); ++id) {
+    if (geometry.triangles[id] == 0 || sensitive[id]) continue;
+    const std::size_t start = 3 * std::size_t(geometry.first_triangle[id]);
+    std::uint64_t hash = std::uint64_t(geometry.triangles[id]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3f& p = geometry.positions[std::size_t(geometry.indices[start + k])];
+      for (const float x : {p.x, p.y, p.z}) hash = hash64(hash ^ std::bit_cast<std::uint32_t>(x));
+    }
+    const auto [found, is_new] = first.emplace(hash, id);
+    if (is_new || !are_equal(found->second, id)) continue;
+    const ScenePlaces::Shape &shape = context.places.shapes[id], &same = context.places.shapes[found->second];
+    findings.add("repeated-shape", shape.where,
+                 fmt::format("the {} is there twice, in the same place: also as {} ({})", shape.name,
+                             same.name, place_of(same.where)),
+                 "remove one of them: only one is seen");
+  }
+}
+
+}  // namespace etendue
