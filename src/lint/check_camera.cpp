@@ -28,7 +28,7 @@ void check_clip_planes(const LintContext& context, Findings& findings) {
     const float t = seen.unclipped->hit.t;
     nearest = std::min(nearest, t);
     farthest = std::max(farthest, t);
-    behind_far += !seen.hit && t > camera.near_clip;
+    behind_far += !seen.hit && t >= seen.t_far;
   }
   const Location& where = context.places.far_clip.value_or(context.places.camera);
   const std::string told = fmt::format(
@@ -88,6 +88,21 @@ void check_inside(const LintContext& context, Findings& findings) {
                turn_shape_round(scene.geometry.sphere[at] >= 0));
 }
 
+void check_default_clip(const LintContext& context, Findings& findings) {
+  constexpr float default_in_nori = 1e4f;
+  const float far_clip = context.scene.camera.far_clip;
+  const bool is_used =
+      std::any_of(context.view.rays.begin(), context.view.rays.end(),
+                  [](const View::Seen& seen) { return seen.hit && seen.hit->hit.t > default_in_nori; });
+  if (context.places.far_clip || far_clip <= default_in_nori || !is_used) return;
+  findings.add(
+      "clip-default-moved", context.places.camera,
+      fmt::format("some of what is in view lies behind Nori's default far clip plane, 1e4 m; it is at {:.3g} "
+                  "here, as the file states none",
+                  far_clip),
+      "state farClip; if these are millimetres, scale the scene by 0.001");
+}
+
 void check_backs(const LintContext& context, Findings& findings) {
   int backs = 0;
   const ProbeHit* example = nullptr;
@@ -133,6 +148,7 @@ void check_camera(const LintContext& context, Findings& findings) {
   else if (!has_something_else(context.scene) && !has_shape_in_view(context.scene))
     findings.add("camera-sees-nothing", context.places.camera, "the camera looks away from all shapes",
                  "check origin, target and the signs of toWorld; a camera looks along +z of its own frame");
+  check_default_clip(context, findings);
   if (view.hits > 0) check_units(context, findings);
   // Whoever shows normals or materials sees backs too.
   if (!context.subject.integrator.needs_lights()) return;

@@ -35,6 +35,22 @@ Box widened(const Box& box) {
   return {box.low - Vec3f{by, by, by}, box.high + Vec3f{by, by, by}};
 }
 
+/// Which hashes there were, or others with the same low bits: 16 bits for each that is expected.
+class SeenBits {
+ public:
+  explicit SeenBits(std::size_t expected) : words_(std::bit_ceil(expected / 4 + 1)) {}
+  bool test(std::uint64_t hash) const { return (words_[word(hash)] >> (hash & 63) & 1) != 0; }
+  bool test_and_set(std::uint64_t hash) {
+    const bool was_set = test(hash);
+    words_[word(hash)] |= std::uint64_t(1) << (hash & 63);
+    return was_set;
+  }
+
+ private:
+  std::size_t word(std::uint64_t hash) const { return std::size_t(hash >> 6) & (words_.size() - 1); }
+  std::vector<std::uint64_t> words_;
+};
+
 class PairSearch {
  public:
   PairSearch(const Geometry& geometry, const std::vector<bool>& is_sensitive)
@@ -134,16 +150,22 @@ class PairSearch {
 
   /// Two triangles of one large mesh with the same corners.
   void find_folded(const std::vector<Piece>& mesh) {
-    std::size_t size = 1;
-    while (size < 2 * mesh.size()) size *= 2;
-    std::vector<std::uint32_t> slots(size, 0);  // The piece's number from 1; 0: empty.
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-      std::size_t slot = corners_hash(mesh[i]) & (size - 1);
-      for (; slots[slot] != 0; slot = (slot + 1) & (size - 1)) {
-        const Piece& other = mesh[slots[slot] - 1];
-        if (corners_of(other) == corners_of(mesh[i])) return compare(mesh[i], other);
-      }
-      slots[slot] = i + 1;
+    std::vector<std::uint64_t> hashes;
+    hashes.reserve(mesh.size());
+    for (const Piece& piece : mesh) hashes.push_back(corners_hash(piece));
+    // Few hashes are left that may be there twice, and few triangles that have them.
+    std::vector<std::uint64_t> repeated;
+    SeenBits seen(hashes.size());
+    for (const std::uint64_t hash : hashes)
+      if (seen.test_and_set(hash)) repeated.push_back(hash);
+    SeenBits may_be_repeated(repeated.size());
+    for (const std::uint64_t hash : repeated) may_be_repeated.test_and_set(hash);
+    std::unordered_map<std::uint64_t, std::size_t> first;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      if (!may_be_repeated.test(hashes[i])) continue;
+      const auto [found, is_new] = first.emplace(hashes[i], i);
+      if (!is_new && corners_of(mesh[found->second]) == corners_of(mesh[i]))
+        return compare(mesh[i], mesh[found->second]);
     }
   }
 
@@ -162,7 +184,7 @@ class PairSearch {
   }
 
   /// The same whatever their order.
-  std::size_t corners_hash(const Piece& piece) const {
+  std::uint64_t corners_hash(const Piece& piece) const {
     const auto bits = [](float x) {
       return std::uint64_t(std::bit_cast<std::uint32_t>(x + 0.0f));
     };  // Of -0, 0.
@@ -173,7 +195,7 @@ class PairSearch {
           (bits(p.x) << 32 | bits(p.y)) * 0x9e3779b97f4a7c15u ^ bits(p.z) * 0xbf58476d1ce4e5b9u;
       sum += (mixed ^ mixed >> 29) * 0x94d049bb133111ebu;
     }
-    return std::size_t(sum >> 20);
+    return sum >> 20;
   }
 
   /// Spheres of one centre and radius.
@@ -242,7 +264,7 @@ void report(const LintContext& context, const Pair& pair, Findings& findings) {
       fmt::format("about {:.4g} {:.4g} {:.4g}", pair.middle.x, pair.middle.y, pair.middle.z);
   const std::string second =
       one == other ? "itself" : fmt::format("the {} ({})", in.name, place_of(in.where));
-  const std::string apart = "move them apart by more than a ten-thousandth of their distance from the camera";
+  const std::string apart = "move them apart, if only by a millimetre";
   if (is_first && is_second)
     findings.add(
         "lights-in-one-place", shape.where,

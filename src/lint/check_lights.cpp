@@ -154,7 +154,9 @@ Space space_around(const LintContext& context, LightRays rays) {
     for (int k = 0; k < length; ++k) {
       if (!at) return Space::open;
       const Vec3f to_camera = normalize(context.scene.camera.origin - at->vertex.position);
-      if (is_visible(context.scene, at->vertex.offset_origin(to_camera), context.scene.camera.origin))
+      const bool is_on_side = dot(at->vertex.ng, to_camera) * dot(at->vertex.ng, at->vertex.wo) > 0;
+      if ((is_on_side || context.material_of(*at).is_two_sided) &&
+          is_visible(context.scene, at->vertex.offset_origin(to_camera), context.scene.camera.origin))
         return Space::open;
       at = probe(context.scene, ray_from(*at, next_direction(*at, context.material_of(*at), numbers)));
     }

@@ -24,6 +24,7 @@ const std::vector<Check>& lint_checks() {
       {"camera-sees-nothing", wrong, "no shape is in view"},
       {"clipped-all", wrong, "all that is in view lies outside of the clip planes"},
       {"clipped-much", doubtful, "much of what is in view lies behind the far clip plane"},
+      {"clip-default-moved", harmless, "what is in view lies behind Nori's default far clip plane"},
       {"camera-inside", doubtful, "the camera is inside of a shape that is black from inside"},
       {"camera-on-backs", doubtful, "all that is in view is seen from behind, where it is black"},
       {"large-units", harmless, "sizes look like millimetres"},

@@ -65,7 +65,7 @@ View look(const Scene& scene) {
       const CameraRay<float> ray =
           scene.camera.ray((float(column) + within.x) / side * float(scene.camera.width_px),
                            (float(row) + within.y) / side * float(scene.camera.height_px));
-      View::Seen seen{{ray.origin, ray.direction}, {}, {}};
+      View::Seen seen{{ray.origin, ray.direction}, ray.t_near, ray.t_far, {}, {}};
       seen.hit = probe(scene, seen.ray, ray.t_near, ray.t_far);
       seen.unclipped = seen.hit && ray.t_near <= 1e-4f * seen.hit->hit.t ? seen.hit : probe(scene, seen.ray);
       view.hits += seen.hit.has_value();

@@ -62,6 +62,7 @@ std::vector<MaterialFacts> facts_of(const Materials& materials);
 struct View {
   struct Seen {
     Ray<float> ray;
+    float t_near, t_far;  ///< The clip planes.
     std::optional<ProbeHit> hit, unclipped;
   };
   std::vector<Seen> rays;

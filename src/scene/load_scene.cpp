@@ -4,7 +4,9 @@
 #include "scene/load_light.h"
 #include "scene/load_shape.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <optional>
 #include <string>
@@ -80,6 +82,7 @@ class Loader {
           root.location, "the scene has no shapes",
           "add <mesh type=\"obj\"> with a filename; an environment or a medium alone is not rendered");
     const Sphere bounds = bounding_sphere(geometry_);
+    set_default_clip_planes(medium_ ? medium_->bounds_with(bounds) : bounds);
     lights_.set_scene_bounds(medium_ ? medium_->bounds_with(bounds) : bounds);
     const Clock::time_point start_of_build = Clock::now();
     RayCaster rays(geometry_);
@@ -111,6 +114,7 @@ class Loader {
       camera_ = make_camera(child, description_.dialect, unread_);
       places_.camera = child.location;
       if (const Property* stated = property_of(child, "farClip")) places_.far_clip = stated->value_location;
+      has_near_clip_ = property_of(child, "nearClip") != nullptr;
       for (const Object& part : child.children) {
         if (part.family == "rfilter")
           add_filter(part);
@@ -204,6 +208,16 @@ class Loader {
     return id;
   }
 
+  /// Nori's defaults, which the camera has, are for scenes of common sizes.
+  void set_default_clip_planes(const Sphere& bounds) {
+    // Clip planes are in the camera's own units.
+    const float unit =
+        std::abs(dot(camera_->at_film_origin, normalize(cross(camera_->per_px_x, camera_->per_px_y))));
+    const float farthest = (length(bounds.center - camera_->origin) + bounds.radius) / unit;
+    if (!places_.far_clip) camera_->far_clip = std::max(camera_->far_clip, 1.01f * farthest);
+    if (!has_near_clip_) camera_->near_clip *= std::min(1.0f, bounds.radius / unit);
+  }
+
   /// Of the geometries that `object` has become.
   void note_shapes(const Object& object) {
     const Property* to_world = property_of(object, "toWorld");
@@ -239,7 +253,7 @@ class Loader {
   std::optional<Camera> camera_;
   std::optional<PixelFilter> filter_;
   std::optional<Object> integrator_;
-  bool has_sampler_ = false;
+  bool has_sampler_ = false, has_near_clip_ = false;
   SamplerKind sampler_ = SamplerKind::independent;
   int samples_per_pixel_ = 16;
   Geometry geometry_;
