@@ -80,6 +80,8 @@ class PairSearch {
       rest.insert(rest.end(), mesh.begin(), mesh.end());
     }
     find_spheres();
+    std::sort(pairs_.begin(), pairs_.end(),
+              [](const Pair& a, const Pair& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
     return std::move(pairs_);
   }
 
@@ -105,6 +107,18 @@ class PairSearch {
     return widened(box);
   }
 
+  /// Along the normal, of any length.
+  Vec3f across(const Piece& piece) const {
+    if (piece.triangle < 0)
+      return geometry_.disks[std::size_t(geometry_.disk[std::size_t(piece.geometry)])].ng;
+    return cross(corner(piece, 1) - corner(piece, 0), corner(piece, 2) - corner(piece, 0));
+  }
+  /// Far wider than overlap_of, as lengths may be too small for floats.
+  static bool are_nearly_parallel(const Vec3f& a, const Vec3f& b) {
+    const float cosine = dot(a, b), lengths_sq = length_sq(a) * length_sq(b);
+    return !(cosine * cosine < 0.9f * lengths_sq);
+  }
+
   FlatPiece flat(const Piece& piece) const {
     return piece.triangle < 0
                ? disk_piece(geometry_.disks[std::size_t(geometry_.disk[std::size_t(piece.geometry)])])
@@ -120,6 +134,7 @@ class PairSearch {
   void compare(const Piece& a, const Piece& b) {
     if (pairs_.size() >= most_pairs) return;
     if (known_.count({std::min(a.geometry, b.geometry), std::max(a.geometry, b.geometry)}) > 0) return;
+    if (!are_nearly_parallel(across(a), across(b))) return;  // Most are told apart by this.
     const FlatPiece piece = flat(a);
     if (const Overlap overlap = overlap_of(piece, flat(b)); overlap.is_there)
       note(a.geometry, b.geometry, overlap.is_opposite, overlap.middle, piece.ng);
@@ -141,11 +156,7 @@ class PairSearch {
   }
 
   void join_with_itself(const std::vector<Piece>& pieces) {
-    const BoxTree tree = tree_over(pieces);
-    for (std::uint32_t i = 0; i < pieces.size(); ++i)
-      tree.for_each_meeting(box_of_piece(pieces[i]), [&](std::uint32_t k) {
-        if (k > i) compare(pieces[i], pieces[k]);
-      });
+    tree_over(pieces).for_each_pair([&](std::uint32_t a, std::uint32_t b) { compare(pieces[a], pieces[b]); });
   }
 
   /// Two triangles of one large mesh with the same corners.
