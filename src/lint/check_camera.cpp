@@ -66,26 +66,36 @@ bool has_something_else(const Scene& scene) {
   return scene.lights.infinite_count() > 0 || scene.medium.has_value();
 }
 
-/// Of the rays from the camera in all directions: those that meet a back, all of one shape, in which the
-/// camera is then.
+void add_inside(const LintContext& context, std::int32_t id, Findings& findings) {
+  const auto at = std::size_t(id);
+  const ScenePlaces::Shape& shape = context.places.shapes[at];
+  const bool shines = context.scene.geometry.light[at] >= 0;
+  findings.add("camera-inside", shape.where,
+               fmt::format("the camera is inside of the {}, which {} black from inside", shape.name,
+                           shines ? "shines outwards and is" : "is"),
+               turn_shape_round(context.scene.geometry.sphere[at] >= 0));
+}
+
+/// A shape whose back all rays from the camera meet, whatever their direction; or a sphere of which some meet
+/// the back, as no camera outside of it can see.
 void check_inside(const LintContext& context, Findings& findings) {
   const Scene& scene = context.scene;
   ProbeNumbers numbers(2);
   std::int32_t around = -1;
+  bool is_around = true;
   constexpr int rays = 64;
   for (int k = 0; k < rays; ++k) {
     const auto hit = probe(scene, {scene.camera.origin, square_to_uniform_sphere(numbers.two_units())});
-    if (!hit || hit->is_front || context.material_of(*hit).is_two_sided) return;
-    if (around >= 0 && around != hit->hit.geometry) return;
+    if (!hit || hit->is_front || context.material_of(*hit).is_two_sided) {
+      is_around = false;
+      continue;
+    }
+    if (scene.geometry.sphere[std::size_t(hit->hit.geometry)] >= 0)
+      return add_inside(context, hit->hit.geometry, findings);
+    is_around = is_around && (around < 0 || around == hit->hit.geometry);
     around = hit->hit.geometry;
   }
-  const auto at = std::size_t(around);
-  const ScenePlaces::Shape& shape = context.places.shapes[at];
-  const bool shines = scene.geometry.light[at] >= 0;
-  findings.add("camera-inside", shape.where,
-               fmt::format("the camera is inside of the {}, which {} black from inside", shape.name,
-                           shines ? "shines outwards and is" : "is"),
-               turn_shape_round(scene.geometry.sphere[at] >= 0));
+  if (is_around) add_inside(context, around, findings);
 }
 
 void check_default_clip(const LintContext& context, Findings& findings) {

@@ -239,11 +239,6 @@ class PairSearch {
   std::set<std::pair<std::int32_t, std::int32_t>> known_;
 };
 
-std::string place_of(const Location& where) {
-  const LineColumn at = line_and_column(where);
-  return fmt::format("line {}", at.line);
-}
-
 /// Whether light or the camera sees the place from the side that `ng` points to, as neither does inside of
 /// solids.
 bool is_seen_from(const LintContext& context, const Vec3f& place, const Vec3f& ng) {
@@ -274,7 +269,7 @@ void report(const LintContext& context, const Pair& pair, Findings& findings) {
   const std::string where =
       fmt::format("about {:.4g} {:.4g} {:.4g}", pair.middle.x, pair.middle.y, pair.middle.z);
   const std::string second =
-      one == other ? "itself" : fmt::format("the {} ({})", in.name, place_of(in.where));
+      one == other ? "itself" : fmt::format("the {} (line {})", in.name, line_and_column(in.where).line);
   const std::string apart = "move them apart, if only by a millimetre";
   if (is_first && is_second)
     findings.add(
@@ -299,55 +294,14 @@ void report(const LintContext& context, const Pair& pair, Findings& findings) {
                  "let one reach into the other, or leave a gap");
 }
 
-/// Where it matters which of two surfaces in one place is met first.
-std::vector<bool> sensitive_shapes(const LintContext& context) {
-  const Geometry& geometry = context.scene.geometry;
-  std::vector<bool> are;
-  for (std::size_t id = 0; id < std::size_t(geometry.count()); ++id)
-    are.push_back(geometry.light[id] >= 0 ||
-                  context.materials[std::size_t(geometry.material[id])].is_two_sided);
-  return are;
-}
-
 }  // namespace
 
 void check_coincident_surfaces(const LintContext& context, Findings& findings) {
-  const std::vector<bool> sensitive = sensitive_shapes(context);
-  for (const Pair& pair : PairSearch(context.scene.geometry, sensitive).find())
+  std::vector<bool> are_sensitive;
+  for (std::int32_t id = 0; id < context.scene.geometry.count(); ++id)
+    are_sensitive.push_back(context.is_sensitive(id));
+  for (const Pair& pair : PairSearch(context.scene.geometry, are_sensitive).find())
     report(context, pair, findings);
-}
-
-void check_repeated_shapes(const LintContext& context, Findings& findings) {
-  const Geometry& geometry = context.scene.geometry;
-  const std::vector<bool> sensitive = sensitive_shapes(context);
-  // The same corners of the same triangles; sensitive ones are told of already.
-  const auto are_equal = [&](std::size_t a, std::size_t b) {
-    if (geometry.triangles[a] != geometry.triangles[b]) return false;
-    for (std::size_t k = 0; k < 3 * std::size_t(geometry.triangles[a]); ++k)
-      if (!(geometry
-                .positions[std::size_t(geometry.indices[3 * std::size_t(geometry.first_triangle[a]) + k])] ==
-            geometry
-                .positions[std::size_t(geometry.indices[3 * std::size_t(geometry.first_triangle[b]) + k])]))
-        return false;
-    return true;
-  };
-  std::unordered_map<std::uint64_t, std::size_t> first;
-  for (std::size_t id = 0; id < std::size_t(geometry.count()); ++id) {
-    if (geometry.triangles[id] == 0 || sensitive[id]) continue;
-    const std::size_t start = 3 * std::size_t(geometry.first_triangle[id]);
-    std::uint64_t hash = std::uint64_t(geometry.triangles[id]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3f& p = geometry.positions[std::size_t(geometry.indices[start + k])];
-      for (const float x : {p.x, p.y, p.z}) hash = hash64(hash ^ std::bit_cast<std::uint32_t>(x));
-    }
-    const auto [found, is_new] = first.emplace(hash, id);
-    if (is_new || !are_equal(found->second, id)) continue;
-    const ScenePlaces::Shape &shape = context.places.shapes[id], &same = context.places.shapes[found->second];
-    findings.add("repeated-shape", shape.where,
-                 fmt::format("the {} is there twice, in the same place: also as {} ({})", shape.name,
-                             same.name, place_of(same.where)),
-                 "remove one of them: only one is seen");
-  }
 }
 
 }  // namespace etendue

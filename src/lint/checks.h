@@ -34,6 +34,9 @@ struct LintContext {
   const MaterialFacts& material_of(const ProbeHit& hit) const;
   /// Whether a surface, seen from this side, scatters light at all.
   bool can_be_lit(const ProbeHit& hit) const;
+  /// Whether it matters which is met first of this shape and another in the same place: of lights and
+  /// dielectrics.
+  bool is_sensitive(std::int32_t geometry) const;
 };
 
 void check_camera(const LintContext& context, Findings& findings);

@@ -71,6 +71,11 @@ bool LintContext::can_be_lit(const ProbeHit& hit) const {
   return material.largest_albedo() > 0 && (hit.is_front || material.is_two_sided);
 }
 
+bool LintContext::is_sensitive(std::int32_t geometry) const {
+  const auto at = std::size_t(geometry);
+  return scene.geometry.light[at] >= 0 || materials[std::size_t(scene.geometry.material[at])].is_two_sided;
+}
+
 std::vector<Finding> lint(const LintSubject& subject, const LintEffort& effort) {
   const LintContext context(subject);
   Findings findings;

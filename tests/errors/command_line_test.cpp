@@ -607,6 +607,7 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   ASSERT_EQ(result.exit_code, 0);
   EXPECT_GT(json("s.json").at("invalid_samples"), 0);
   ASSERT_THAT(result.err, HasSubstr("samples were not finite, or were negative"));
+  EXPECT_THAT(result.err, HasSubstr("the first went wrong at vertex 0: scene.xml:3:2: the rectangle 1\n"));
   const std::string start =
       "  etendue render scene.xml --integrator mis --spp 8 --replicates 2 --replicates-by scrambling --seed "
       "7 --replay ";

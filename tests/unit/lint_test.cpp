@@ -165,6 +165,8 @@ std::vector<Case> cases() {
        "camera-inside"},
       {"CameraInALamp", camera() + floor() + sphere_xml({0, -4, 1.5}, 0.3, lamp_xml()), "mis",
        "camera-inside"},
+      {"CameraInADome", camera() + floor() + lamp() + sphere_xml({0, 0, 0}, 50, diffuse_xml(0.5)), "mis",
+       "camera-inside"},
       {"CameraOnBacks", camera({0, -2, -3}) + floor() + lamp(), "mis", "camera-on-backs"},
       {"Millimetres",
        camera({0, -4000, 1500}, {0, 0, 0}) + rectangle_xml({0, 0, 0}, 3000 * x, 3000 * y, diffuse_xml(0.5)) +
@@ -225,6 +227,9 @@ std::vector<Case> cases() {
        camera() + floor() + lamp() + rectangle_xml({0, 0, 1}, x, y, glass) +
            rectangle_xml({0.5, 0, 1}, x, y, glass),
        "path_mis", "glass-in-surface"},
+      {"BlackBallTwice",
+       camera() + floor() + lamp() + sphere_xml({0, 0, 1}, 0.2, "") + sphere_xml({0, 0, 1}, 0.2, ""), "mis",
+       "repeated-shape"},
       {"FloorTwice", camera() + floor() + floor() + lamp(), "mis", "repeated-shape"},
   };
 }
