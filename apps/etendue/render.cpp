@@ -67,11 +67,9 @@ int run(const RenderOptions& options) {
   if (!options.light_sampler.empty())
     settings.integrator = with_light_sampler(settings.integrator, options.light_sampler);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
-  if (const std::string unseen = unseen_lights(settings.integrator, loaded.scene.lights.dirac_count());
-      !unseen.empty())
-    loaded.warnings.push_back(unseen);
   check_settings(settings);
-  warn(options, loaded.warnings);
+  const LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};
+  warn(options, loaded.warnings, options.replay.empty() ? lint(subject, brief) : std::vector<Finding>{});
   if (!options.replay.empty()) {
     const SampleId sample = sample_id_from_text(options.replay);
     if (!options.outputs.empty() || !options.stats_file.empty())
@@ -88,6 +86,7 @@ int run(const RenderOptions& options) {
   const RenderResult& result = rendering.result;
   const WrittenFiles written = write_outputs(rendering);
   report_invalid(rendering);
+  report_dark(rendering, subject);
   say_what_was_saved(rendering, written);
   if (!options.is_quiet)
     say("{} in {}: {:.1f} million samples a second\n", result.is_interrupted ? "interrupted" : "done",

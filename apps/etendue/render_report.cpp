@@ -1,9 +1,14 @@
 #include "render_report.h"
 
 #include "messages.h"
+#include "render/replay.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
+#include <string_view>
 #include <sys/resource.h>
 
 namespace etendue::app {
@@ -14,6 +19,73 @@ std::int64_t peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return std::int64_t(usage.ru_maxrss) * 1024;
+}
+
+/// "file:line:column: ", or nothing where that is not known.
+std::string place_text(const Location& where) {
+  if (!where.source) return "";
+  const LineColumn at = line_and_column(where);
+  return fmt::format("{}:{}:{}: ", where.source->path, at.line, at.column);
+}
+
+struct FindingLine {
+  std::string text;
+  Severity severity;
+};
+
+/// A line for each finding, but of many by one check only the first few.
+std::vector<FindingLine> lines_of(const std::vector<Finding>& findings) {
+  constexpr int most_alike = 3;
+  std::vector<FindingLine> lines;
+  std::map<std::string_view, int> counts;
+  for (const Finding& finding : findings)
+    if (++counts[finding.id] <= most_alike)
+      lines.push_back({fmt::format("{}{} [{}]", place_text(finding.where), finding.problem, finding.id),
+                       finding.severity});
+  for (const auto& [id, count] : counts)
+    if (count > most_alike) {
+      const auto alike = std::find_if(findings.begin(), findings.end(),
+                                      [&, id = id](const Finding& finding) { return finding.id == id; });
+      lines.push_back(
+          {fmt::format("{} more of the kind [{}]: etendue lint lists them", count - most_alike, id),
+           alike->severity});
+    }
+  return lines;
+}
+
+/// The object at which the first invalid sample went wrong; empty where a replay does not show it.
+std::string object_of_invalid(const Rendering& rendering) {
+  const InvalidSample& first = rendering.result.invalid.first().front();
+  const ScenePlaces& places = rendering.loaded.places;
+  const SampleTrace trace =
+      replay(rendering.loaded.scene, rendering.settings, {first.x, first.y, first.replicate, first.index});
+  const auto is_bad = [](const Colorf& c) {
+    const auto is_bad_channel = [](float x) { return !std::isfinite(x) || x < 0; };
+    return is_bad_channel(c.r) || is_bad_channel(c.g) || is_bad_channel(c.b);
+  };
+  for (const SampleTrace::Vertex& vertex : trace.vertices) {
+    const bool is_here =
+        is_bad(vertex.radiance) || (vertex.bsdf_sample && is_bad(vertex.bsdf_sample->throughput));
+    if (!is_here) continue;
+    if (!vertex.surface)
+      return vertex.kind == SampleTrace::Vertex::Kind::medium
+                 ? fmt::format("vertex {}, in the medium", vertex.number)
+                 : "a light at infinity";
+    const auto geometry = std::size_t(vertex.surface->geometry);
+    const ScenePlaces::Shape& shape = places.shapes[geometry];
+    return fmt::format("vertex {}: {}the {}", vertex.number, place_text(shape.where), shape.name);
+  }
+  return "";
+}
+
+std::vector<Pixel> dark_pixels(const Film& film) {
+  std::vector<Pixel> dark;
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const PixelStatistics& pixel = film.at(x, y);
+      if (pixel.count > 0 && pixel.mean == Color<double>{0, 0, 0}) dark.push_back({x, y});
+    }
+  return dark;
 }
 
 }  // namespace
@@ -68,12 +140,17 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   return json;
 }
 
-void warn(const RenderOptions& options, const std::vector<std::string>& warnings) {
-  if (warnings.empty()) return;
-  if (options.is_strict)
-    throw InputError(fmt::format("{}\n--strict makes warnings errors", fmt::join(warnings, "\n")));
+void warn(const RenderOptions& options, const std::vector<std::string>& warnings,
+          const std::vector<Finding>& findings) {
+  std::vector<std::string> worth_an_error = warnings, harmless;
+  for (const auto& [text, severity] : lines_of(findings))
+    (severity == Severity::harmless ? harmless : worth_an_error).push_back(text);
+  if (options.is_strict && !worth_an_error.empty())
+    throw InputError(fmt::format("{}\n--strict makes warnings errors", fmt::join(worth_an_error, "\n")));
+  for (std::size_t k = options.is_quiet ? warnings.size() : 0; k < worth_an_error.size(); ++k)
+    say("warning: {}\n", worth_an_error[k]);
   if (options.is_quiet) return;
-  for (const std::string& warning : warnings) say("warning: {}\n", warning);
+  for (const std::string& text : harmless) say("warning: {}\n", text);
 }
 
 void report_invalid(const Rendering& rendering) {
@@ -84,8 +161,29 @@ void report_invalid(const Rendering& rendering) {
   for (const InvalidSample& sample : result.invalid.first())
     say("  pixel {},{} replicate {} sample {}: radiance {} {} {}\n", sample.x, sample.y, sample.replicate,
         sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
+  if (const std::string object = object_of_invalid(rendering); !object.empty())
+    say("the first went wrong at {}\n", object);
   say("to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
       replay_command(rendering.options, result.invalid.first().front()));
+}
+
+void report_dark(const Rendering& rendering, const LintSubject& subject) {
+  if (rendering.result.is_fragment) return;
+  const std::vector<Pixel> dark = dark_pixels(rendering.result.film);
+  if (std::int64_t(dark.size()) == rendering.pixels() && rendering.result.invalid.count() == 0) {
+    say("warning: the image is black: {}\n", reason_of_black_image(subject));
+    return;
+  }
+  if (rendering.options.is_quiet) return;
+  if (rendering.result.replicates == 1)
+    say("the error of the image is not known: it takes two replicates to tell (--replicates), and the stderr "
+        "layers "
+        "hold not-a-number\n");
+  if (const std::size_t lit = count_lit_pixels(subject, dark); lit > 0)
+    say("about {} of {} black pixels show surfaces that light does reach, but no sample found it: there the "
+        "error is "
+        "not 0, as the stderr layers say, but unknown\n",
+        lit, dark.size());
 }
 
 }  // namespace etendue::app

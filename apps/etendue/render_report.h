@@ -1,6 +1,7 @@
 // What a render says of itself: the JSON of --stats, warnings, bad samples.
 #pragma once
 
+#include "lint/lint.h"
 #include "render_options.h"
 #include "scenefile/scene_desc.h"
 
@@ -26,10 +27,16 @@ struct Rendering {
 
 nlohmann::ordered_json stats(const Rendering& rendering);
 
-/// On stderr, unless --quiet. Throws InputError with --strict.
-void warn(const RenderOptions& options, const std::vector<std::string>& warnings);
+/// On stderr; with --quiet only findings that are not harmless. Throws InputError with --strict where there
+/// is anything but harmless findings.
+void warn(const RenderOptions& options, const std::vector<std::string>& warnings,
+          const std::vector<Finding>& findings);
 
-/// On stderr: the first bad samples, and how to replay one.
+/// On stderr: the first bad samples, the object at which the first went wrong, and how to replay it.
 void report_invalid(const Rendering& rendering);
+
+/// On stderr: why an image is black, which error bars of 0 say nothing, and that of one replicate none is
+/// known.
+void report_dark(const Rendering& rendering, const LintSubject& subject);
 
 }  // namespace etendue::app

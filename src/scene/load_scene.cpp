@@ -5,10 +5,13 @@
 #include "scene/load_shape.h"
 #include "scene/moved_scene.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <unordered_map>
 #include <unordered_set>
@@ -53,6 +56,13 @@ std::string text_of(const Object& object) {
   return text;
 }
 
+/// Null where the file does not state it.
+const Property* property_of(const Object& object, std::string_view name) {
+  for (const Property& property : object.properties)
+    if (property.name == name) return &property;
+  return nullptr;
+}
+
 /// Collects the parts of a scene as the file lists them.
 class Loader {
  public:
@@ -65,6 +75,7 @@ class Loader {
   LoadedScene load() {
     const Clock::time_point start = Clock::now();
     const Object& root = description_.root;
+    places_.scene = root.location;
     if (root.family != "scene")
       throw InputError(root.location, fmt::format("the root is <{}>, not <scene>", root.family));
     Parameters(root, scene_plugin(), unread_);
@@ -78,6 +89,7 @@ class Loader {
           "add <mesh type=\"obj\"> with a filename; an environment or a medium alone is not rendered");
     const Sphere bounds = bounding_sphere(geometry_);
     const Sphere whole = medium_ ? medium_->bounds_with(bounds) : bounds;
+    set_default_clip_planes(whole);
     lights_.set_scene_bounds(whole);
     camera_->approach(whole);
     const Clock::time_point start_of_build = Clock::now();
@@ -92,6 +104,7 @@ class Loader {
                   std::move(lights_),
                   medium_,
                   sampler_},
+            std::move(places_),
             integrator_ ? *integrator_ : Object{},
             samples_per_pixel_,
             warnings(),
@@ -114,6 +127,9 @@ class Loader {
     if (child.family == "camera") {
       once(camera_.has_value(), child);
       camera_ = make_camera(child, description_.dialect, unread_);
+      places_.camera = child.location;
+      if (const Property* stated = property_of(child, "farClip")) places_.far_clip = stated->value_location;
+      has_near_clip_ = property_of(child, "nearClip") != nullptr;
       for (const Object& part : child.children) {
         if (part.family == "rfilter")
           add_filter(part);
@@ -135,6 +151,7 @@ class Loader {
         throw InputError(child.location, "an area light is a shape: it has no place inside <scene>",
                          "put it inside a <mesh> or <shape>, which then shines");
       add_light(child, description_.directory, lights_, unread_);
+      note_light(child);
     } else {
       add_shape(child);
     }
@@ -172,7 +189,7 @@ class Loader {
         light = &part;
       }
     }
-    SurfaceIds ids{.material = material_id(bsdf)};
+    SurfaceIds ids{.material = material_id(bsdf, object)};
     std::optional<Colorf> radiance;
     bool is_twosided = false;
     if (light && light->type == area_light_name) {
@@ -182,10 +199,13 @@ class Loader {
       ids.light = lights_.count();
     } else if (light) {
       add_light(*light, description_.directory, lights_, unread_);
+      note_light(*light);
     }
     add_shape_geometry(object, description_.directory, ids, radiance, meshes_, geometry_, lights_, unread_,
                        warnings_);
     if (is_twosided) lights_.set_twosided(ids.light);
+    note_shapes(object);
+    if (light) note_light(*light);
     if (has_texture(materials_[std::size_t(ids.material)]) && geometry_.triangles.back() > 0 &&
         geometry_.has_uvs.back() == 0)
       warnings_.push_back(format_message(
@@ -196,15 +216,45 @@ class Loader {
 
   /// Of the material that `bsdf` describes, diffuse where there is none. Shapes whose descriptions are alike
   /// share one; where the description has keys that nobody reads, each is made, and warned of, by itself.
-  std::int32_t material_id(const Object* bsdf) {
+  std::int32_t material_id(const Object* bsdf, const Object& shape) {
     const std::string description = bsdf ? text_of(*bsdf) : "";
     if (const auto known = material_ids_.find(description); known != material_ids_.end())
       return known->second;
     const auto id = std::int32_t(materials_.size());
     const std::size_t unread_before = unread_.size();
     materials_.push_back(bsdf ? make_material(*bsdf, textures_, unread_) : Material{Diffuse{}});
+    places_.materials.push_back(bsdf ? bsdf->location : shape.location);
     if (unread_.size() == unread_before) material_ids_.emplace(description, id);
     return id;
+  }
+
+  /// Nori's defaults, which the camera has, are for scenes of common sizes.
+  void set_default_clip_planes(const Sphere& bounds) {
+    // Clip planes are in the camera's own units.
+    const double unit =
+        std::abs(dot(camera_->at_film_origin, normalize(cross(camera_->per_px_x, camera_->per_px_y))));
+    const Vec3<double> center{bounds.center.x, bounds.center.y, bounds.center.z};
+    const double farthest = (length(center - camera_->origin) + bounds.radius) / unit;
+    if (!places_.far_clip) camera_->far_clip = std::max(camera_->far_clip, float(1.01 * farthest));
+    if (!has_near_clip_) camera_->near_clip *= float(std::min(1.0, bounds.radius / unit));
+  }
+
+  /// Of the geometries that `object` has become.
+  void note_shapes(const Object& object) {
+    const Property* to_world = property_of(object, "toWorld");
+    const auto* transform = to_world ? std::get_if<Transform>(&to_world->value) : nullptr;
+    const bool is_mirrored = transform && determinant(*transform) < 0;
+    const Property* file = property_of(object, "filename");
+    const auto* filename = file ? std::get_if<std::string>(&file->value) : nullptr;
+    const std::string name = !object.name.empty() ? fmt::format("{} '{}'", object.type, object.name)
+                             : filename           ? fmt::format("{} '{}'", object.type, *filename)
+                                        : fmt::format("{} {}", object.type, places_.shapes.size() + 1);
+    places_.shapes.resize(std::size_t(geometry_.count()), {object.location, name, is_mirrored});
+  }
+
+  void note_light(const Object& object) {
+    while (places_.lights.size() < std::size_t(lights_.count()))
+      places_.lights.push_back({object.location, lights_.name(std::int32_t(places_.lights.size()))});
   }
 
   static void once(bool is_there, const Object& object) {
@@ -230,13 +280,14 @@ class Loader {
   std::optional<Camera> camera_;
   std::optional<PixelFilter> filter_;
   std::optional<Object> integrator_;
-  bool has_sampler_ = false;
+  bool has_sampler_ = false, has_near_clip_ = false;
   SamplerKind sampler_ = SamplerKind::independent;
   int samples_per_pixel_ = 16;
   Geometry geometry_;
   std::vector<Material> materials_;
   std::unordered_map<std::string, std::int32_t> material_ids_;  ///< By what text_of() makes of the BSDF.
   Lights lights_;
+  ScenePlaces places_;
   std::optional<HomogeneousMedium> medium_;
   std::vector<UnreadKey> unread_;
   std::vector<std::string> warnings_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/scene.h"
+#include "scene/scene_places.h"
 #include "scenefile/scene_desc.h"
 
 #include <string>
@@ -12,6 +13,7 @@ namespace etendue {
 /// A scene ready to render, with the parts of the file that the command line may override.
 struct LoadedScene {
   Scene scene;
+  ScenePlaces places;
   Object integrator;  ///< Unread until the render chooses; type empty where the file has none.
   int samples_per_pixel = 16;
   std::vector<std::string> warnings;  ///< Keys that nobody read, triangles without area ...

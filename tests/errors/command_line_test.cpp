@@ -55,6 +55,22 @@ std::string metadata(const Image& image, const std::string& name) {
   return "(none)";
 }
 
+TEST_F(CommandLine, LintSaysWhatIsOddAsJsonToo) {
+  const ProgramResult good = run({"lint", "scene.xml", "--json", "good.json"});
+  EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
+  EXPECT_TRUE(nlohmann::json::parse(read_file(path("good.json")))["findings"].empty());
+  write_file(path("black.xml"), scene_xml(40, 30, "0"));
+  EXPECT_EQ(run({"lint", "black.xml", "--json", "black.json"}).exit_code, 1);
+  const auto findings = nlohmann::json::parse(read_file(path("black.json")))["findings"];
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0]["id"], "light-black");
+  EXPECT_EQ(findings[0]["severity"], "doubtful");
+  EXPECT_EQ(findings[0]["file"], "black.xml");
+  EXPECT_EQ(findings[0]["line"], 4);
+  EXPECT_EQ(run({"lint", "scene.xml", "--json", "scene.xml"}).exit_code, 2);
+  EXPECT_EQ(run({"lint", "nowhere.xml"}).exit_code, 2);
+}
+
 TEST_F(CommandLine, HelpOfRenderNamesEveryOption) {
   const ProgramResult help = run({"render", "--help"});
   EXPECT_EQ(help.exit_code, 0);
@@ -633,6 +649,7 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   ASSERT_EQ(result.exit_code, 0);
   EXPECT_GT(json("s.json").at("invalid_samples"), 0);
   ASSERT_THAT(result.err, HasSubstr("samples were not finite, or were negative"));
+  EXPECT_THAT(result.err, HasSubstr("the first went wrong at vertex 0: scene.xml:3:2: the rectangle 1\n"));
   const std::string start =
       "  etendue render scene.xml --integrator mis --spp 8 --replicates 2 --replicates-by scrambling --seed "
       "7 --replay ";
