@@ -55,7 +55,8 @@ def value(place, integrator, budget="samples"):
 def which(places, top, bottom):
     light, direct = worst_place(places, "light"), worst_place(places, "direct")
     text = (f"<p>In the handout's figure, as in ours above: <strong>left: area sampling</strong> of the lights "
-            f"(<code>light</code>); <strong>right: directional (BRDF) sampling</strong> (<code>direct</code>).</p><p>The two can be told apart by where they fail. Over "
+            f"(<code>light</code>); <strong>right: directional (BRDF) sampling</strong> "
+            f"(<code>direct</code>).</p><p>The two can be told apart by where they fail. Over "
             f"the twelve highlights of our scene, the relative variance of area sampling is largest on {name(light)} "
             f"({sig(value(light, 'light'))}; directional sampling has "
             f"{sig(value(light, 'direct'))} there). That of directional sampling is largest on "
@@ -97,7 +98,8 @@ def materials(scene, places, layout):
                  + ", ".join(f"{r['measured_px']} pixels wide in the {r['name']} plate" for r in rows)
                  + " (width at half of the maximum, in the reference image). A wider lobe means a smaller exponent, so "
                    "<strong>the top plate is nearly a mirror, the middle one is glossy, and the bottom one is rough"
-                   "</strong>. The highlights also grow dimmer as they grow wider: all plates reflect the same share of "
+                   "</strong>. The highlights also grow dimmer as they grow wider: all plates reflect the same share "
+                   "of "
                    "the light and only spread it differently.</p>")
     else:
         text += ("<strong>The measured widths do not grow from the top plate to the bottom one</strong> ("
@@ -135,7 +137,8 @@ def worst(top, bottom, exponents, predictions):
                 "better": f"<strong>contrary to the exercise, only {times(ratio.value)} the variance of</strong>"
                 }[ratio.compared]
 
-    text = ("<p>An estimate is noisy where its samples have very different values: most of them small or zero, and a few "
+    text = ("<p>An estimate is noisy where its samples have very different values: most of them small or zero, and a "
+            "few "
             "that must make up for them.</p>")
     text += (f"<p><strong>Bottom plate on the left, directional sampling.</strong> The lobe is wide and the light is "
              f"small, so a direction drawn from the lobe seldom meets the light. If <i>θ<sub>l</sub></i> is the angle "
@@ -147,7 +150,8 @@ def worst(top, bottom, exponents, predictions):
              f"light the wide lobe is almost constant. Measured here, directional sampling has "
              f"{compare(bottom, 'direct', 'light')} area sampling.</p>")
     text += (f"<p><strong>Top plate on the right, area sampling.</strong> The points are spread over the whole of the "
-             f"large light, but the lobe is so narrow that only those next to the mirror direction return anything, and "
+             f"large light, but the lobe is so narrow that only those next to the mirror direction return anything, "
+             f"and "
              f"those return very much. How uneven the lobe is over the light is told by</p><p class=math>"
              f"{formula('spread')}</p><p>which is {sig(spread_of(top), 2)} here and {sig(spread_of(bottom), 2)} for "
              f"{name(bottom)} (1 means constant). Directional sampling draws from that lobe, so nearly all its samples "
@@ -155,12 +159,13 @@ def worst(top, bottom, exponents, predictions):
              f"{compare(top, 'light', 'direct')} directional sampling.</p>")
     ratios = {i: [value(r["place"], i) / r["variance"][i] for r in predictions
                   if r["place"].sampled["samples"][i].is_found] for i in ("light", "direct")}
-    text += ("<p>The table has both beside what follows from them for a whole place: the mean over its pixels, also those "
+    text += ("<p>The table has both beside what follows from them for a whole place: the mean over its pixels, also "
+             "those "
              "beside the mirror image of the light's middle, divided by the number of samples. Measured is "
              + " and ".join(f"{sig(min(r), 2)} to {sig(max(r), 2)} times of what is predicted for <code>{i}</code>"
                             for i, r in ratios.items())
-             + ". They differ because the prediction takes samples as independent, where the renderer's Sobol points are "
-               "spread evenly and so do better, the most where nearly all samples have one value; because it knows no "
+             + ". They differ because the prediction takes samples as independent, where the renderer's Sobol points "
+               "are spread evenly and so do better, the most where nearly all samples have one value; because it knows no "
                "width of a pixel, no diffuse part and no other lights; and because it takes each place as a square and "
                "angles as lengths in a plane, which is roughest for the largest light on the top plate.</p>")
     return text
@@ -195,7 +200,8 @@ def tally(scene, budget, integrator):
     counts = {k: count(f"{budget}/{integrator}/{k}", said.count(k)) for k in ("better", "equal", "worse")}
     missed = len(scene.places) - len(said)
     more = f" (its mean is not found in {count(f'{budget}/{integrator}/not_found', missed)})" if missed else ""
-    return (f"better in {counts['better']} of the {count('places', len(scene.places))} places, not to be told from it in "
+    return (f"better in {counts['better']} of the {count('places', len(scene.places))} places, not to be told from "
+            f"it in "
             f"{counts['equal']}, worse in {counts['worse']}{more}")
 
 
@@ -216,21 +222,30 @@ def best_of_both(scene, seeds):
     never_better = all(p.over_best("time", "average").compared != "better" for p in places)
     always_better = all(p.over_best("time", "average").compared == "better" for p in places)
     verdict = "By these figures, yes." if always_better else "No." if never_better else "Hardly."
-    text = (f"<p><strong>{verdict}</strong> The average of two unbiased images is unbiased too. With the same number of "
-            f"samples from each, and both independent,</p><p class=math>{formula('average')}</p><p>so wherever one method "
-            f"is much worse than the other, the average keeps a quarter of the <em>larger</em> variance, however good the "
+    text = (f"<p><strong>{verdict}</strong> The average of two unbiased images is unbiased too. With the same number "
+            f"of "
+            f"samples from each, and both independent,</p><p class=math>{formula('average')}</p><p>so wherever one "
+            f"method "
+            f"is much worse than the other, the average keeps a quarter of the <em>larger</em> variance, however "
+            f"good the "
             f"other method is: half of the worse image's noise stays. The average here has samples of its own, none of "
             f"them from the other two images, so that this can be tested: its measured variance is between "
             f"{theory_range(places)} of what the formula says.</p>")
     text += compared_words(scene, seeds)
-    text += (f"<p>That averaging cannot win at equal cost is seen without measuring: with half of the samples from each,"
-             f"</p><p class=math>{formula('average_cost')}</p><p>which is the plain mean of the two variances (as long as "
-             f"variance falls with 1/<i>N</i>) and so <em>never</em> less than the smaller one. The average only avoids "
+    text += (f"<p>That averaging cannot win at equal cost is seen without measuring: with half of the samples from "
+             f"each,"
+             f"</p><p class=math>{formula('average_cost')}</p><p>which is the plain mean of the two variances (as "
+             f"long as "
+             f"variance falls with 1/<i>N</i>) and so <em>never</em> less than the smaller one. The average only "
+             f"avoids "
              f"having the worst place of one image alone: it has a smaller version of both artefacts.</p>")
-    text += (f"<p>What helps is to weight each <em>sample</em>, not each image: multiple importance sampling (Veach and "
+    text += (f"<p>What helps is to weight each <em>sample</em>, not each image: multiple importance sampling (Veach "
+             f"and "
              f"Guibas), here with the balance heuristic and one sample from each method,</p><p class=math>"
-             f"{formula('mis')}</p><p class=math>{formula('mis_weight')}</p><p>where both densities are per solid angle. A "
-             f"sample that the other method would have drawn far more often gets a small weight, so the rare large values "
+             f"{formula('mis')}</p><p class=math>{formula('mis_weight')}</p><p>where both densities are per solid "
+             f"angle. A "
+             f"sample that the other method would have drawn far more often gets a small weight, so the rare large "
+             f"values "
              f"that make the noise mostly vanish. {mis_words(scene)}</p>")
     return text + f"<p>{whole_image(scene)}</p>"
 
@@ -244,9 +259,11 @@ def compared_words(scene, seeds):
     """The average and MIS against the better one of the two single methods, at equal samples and at equal time."""
     spp = {i: count(f"time/spp/{i}", scene.methods["time"][i].spp) for i in INTEGRATORS}
     seconds = {i: with_interval(f"time/seconds/{i}", scene.methods["time"][i].seconds) for i in INTEGRATORS}
-    text = (f"<p><strong>Equal samples</strong> ({count('samples/spp', scene.methods['samples']['light'].spp)} a pixel). "
+    text = (f"<p><strong>Equal samples</strong> ({count('samples/spp', scene.methods['samples']['light'].spp)} a "
+            f"pixel). "
             f"This flatters <code>average</code> and <code>mis</code> alike: each of their samples is one of the light "
-            f"<em>and</em> one of the BSDF, so they take twice as many in all. Against the better one of <code>light</code> "
+            f"<em>and</em> one of the BSDF, so they take twice as many in all. Against the better one of "
+            f"<code>light</code> "
             f"and <code>direct</code>, the average is {tally(scene, 'samples', 'average')}; <code>mis</code> is "
             f"{tally(scene, 'samples', 'mis')}. At worst the average has {loss_words(scene, 'samples', 'average')} its "
             f"variance, <code>mis</code> {loss_words(scene, 'samples', 'mis')}.</p>")
@@ -256,7 +273,8 @@ def compared_words(scene, seeds):
                f"{tally(scene, 'time', 'mis')}. At worst the average has {loss_words(scene, 'time', 'average')} the "
                f"variance of the better one, <code>mis</code> {loss_words(scene, 'time', 'mis')}.</p>")
     return text + (f"<p>In brackets are 95 % intervals, from {count('seeds', seeds)} independent seeds of each method; "
-                   f"“not to be told” means that the interval of the ratio has one in it. Where the variance itself is made by "
+                   f"“not to be told” means that the interval of the ratio has one in it. Where the variance itself "
+                   f"is made by "
                    f"rare large values, seeds that all missed them make it look too small and too certain.</p>")
 
 
@@ -264,10 +282,11 @@ def best_of_both_sentence(scene):
     """The result in one sentence, for the head of the page."""
     _, mis = largest_loss(scene, "time", "mis")
     _, average = largest_loss(scene, "time", "average")
-    return (f"Each method fails where the other is good; in the same processor time multiple importance sampling has at most "
+    return (f"Each method fails where the other is good; in the same processor time multiple importance sampling has "
+            f"at most "
             f"{with_interval('time/mis/largest_loss', mis)} times the variance of the better one in each of the "
             f"{count('places', len(scene.places))} mirror images, and the average of the two images up to "
-            f"{with_interval('time/average/largest_loss', average)} times (in brackets: 95 % intervals).")
+            f"{with_interval('time/average/largest_loss', average)} times (in brackets: 95 % intervals).")
 
 
 def mis_words(scene):
@@ -275,11 +294,14 @@ def mis_words(scene):
     said = [p.over_best("time", "mis").compared for p in scene.places]
     _, mis = largest_loss(scene, "time", "mis")
     _, average = largest_loss(scene, "time", "average")
-    text = ("Where one method does nearly all of the work, the other's samples are time lost, so at equal time it does not "
+    text = ("Where one method does nearly all of the work, the other's samples are time lost, so at equal time it "
+            "does not "
             "always beat the better one" if "worse" in said else
             "At equal time it is nowhere clearly worse than the better one of the two methods")
-    return (f"{text}. Its strength is that it is <strong>never far from the best</strong>, without anybody knowing which "
-            f"that is: at most × {with_interval('time/mis/largest_loss', mis)} its variance, where the average has up to × "
+    return (f"{text}. Its strength is that it is <strong>never far from the best</strong>, without anybody knowing "
+            f"which "
+            f"that is: at most × {with_interval('time/mis/largest_loss', mis)} its variance, where the average has "
+            f"up to × "
             f"{with_interval('time/average/largest_loss', average)}.")
 
 

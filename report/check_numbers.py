@@ -2,8 +2,8 @@
 """Recomputes every number of 3.3.4 on the page from the renders in its cache: `check_numbers.py out/demo`.
 
 It shares no code with what wrote the page: it finds the renders by what their statistics say, reads them with another
-interface of OpenImageIO, and takes variances from differences of pairs of seeds. Exit code 1 where a number differs, where
-one of 3.3.4 is not recomputed, or where one that should be there is missing.
+interface of OpenImageIO, and takes variances from differences of pairs of seeds. Exit code 1 where a number differs,
+where one of 3.3.4 is not recomputed, or where there are too few.
 """
 import html.parser
 import itertools
@@ -20,7 +20,8 @@ import OpenImageIO as oiio
 SCENES = Path(__file__).resolve().parent.parent / "scenes" / "ex3"
 # Two-sided 95 % points of Student's t
 T_95 = {3: 3.18245, 4: 2.77645, 5: 2.57058, 6: 2.44691, 7: 2.36462}
-NEXT_TO_NUMBERS = re.compile(r"light \d|95 % interval|1/N")  # a light's name; what the brackets are; how variance falls
+# A light's name; what the brackets are; how variance falls
+NEXT_TO_NUMBERS = re.compile(r"light \d|95\s% interval|1/N")
 
 
 class Section(html.parser.HTMLParser):
@@ -74,7 +75,7 @@ def brightness(file, first=0):
 
 
 def renders(cache):
-    """(integrator, samples) -> [(seed, image, processor seconds, file)] of the plates, but for those of one seed alone."""
+    """(integrator, samples) -> [(seed, image, processor seconds, file)] of the plates, without those of one seed."""
     found = [(json.loads(f.read_text()), f.with_suffix(".exr")) for f in sorted(cache.glob("*.json"))]
     found = [(s, f) for s, f in found if Path(s["scene"]).stem.startswith("phong_plates")]
     kept = defaultdict(list)
@@ -165,7 +166,8 @@ class Recomputed:
             variance[i], error_sq[i] = pair_variance(here) / brightness_sq, log_jackknife(here)
             self.add_estimate(f"{budget}/{region['plate']}/{region['light']}/{i}", variance[i], error_sq[i])
             count = here[0].size
-            noise_sq = variance[i] * brightness_sq / (count * len(here)) + (self.reference_error[at] ** 2).sum() / count ** 2
+            noise_sq = variance[i] * brightness_sq / (count * len(here))
+            noise_sq += (self.reference_error[at] ** 2).sum() / count ** 2
             if abs(np.mean(here) - self.reference[at].mean()) <= 4 * math.sqrt(noise_sq):
                 found.add(i)
         better = min(found & {"light", "direct"}, key=variance.get)

@@ -9,7 +9,7 @@ STUDENT = {1: 12.706, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365
 
 @dataclass(frozen=True)
 class Estimate:
-    """A positive figure; `log_error` is the standard error of its logarithm, so that no end of its interval is negative."""
+    """A positive figure; `log_error` is the standard error of its logarithm, so that its interval is positive too."""
     value: float
     log_error: float
     degrees: int
@@ -49,7 +49,7 @@ def mean_of(values):
 
 
 def jackknife(value, left_out):
-    """A figure of all seeds, from the same figure with each seed left out in turn (Tukey's jackknife of the logarithm)."""
+    """A figure of all seeds, from the same figure with each seed left out in turn: Tukey's jackknife, of logarithms."""
     n = len(left_out)
     if value <= 0 or min(left_out) <= 0:
         return Estimate(value, 0.0, n - 1)

@@ -37,7 +37,8 @@ TITLES = {
                       "on the left, a small warm one on the right and a narrow one behind. Each object has three "
                       "shadows; the larger the light, the softer."),
     "phong_plates": ("Lights and Phong plates",
-                     "Four spheres of equal power, from small to large, and three plates of one colour that mirror them "
+                     "Four spheres of equal power, from small to large, and three plates of one colour that mirror "
+                     "them "
                      "to the camera; the shiniest is on top."),
 }
 
@@ -152,10 +153,13 @@ def time_words(measured, effort):
     parts = []
     for name, m in measured.items():
         s = m.reference.stats
-        each = ", ".join(f"<code>{i}</code> {sig(m.equal_samples[i][0].stats['seconds_render'])} s" for i in INTEGRATORS)
+        each = ", ".join(f"<code>{i}</code> {sig(m.equal_samples[i][0].stats['seconds_render'])} s"
+                         for i in INTEGRATORS)
         seconds = sum(r.stats["seconds_render"] for r in m.all_renders())
-        parts.append(f"{TITLES[name][0]} ({s['width']} × {s['height']} pixels, {s['triangles']} triangles, {s['lights']} "
-                     f"lights): one image at {effort.spp} samples a pixel takes {each}; all renders of the scene for this "
+        parts.append(f"{TITLES[name][0]} ({s['width']} × {s['height']} pixels, {s['triangles']} triangles, "
+                     f"{s['lights']} "
+                     f"lights): one image at {effort.spp} samples a pixel takes {each}; all renders of the scene for "
+                     f"this "
                      f"page took {sig(seconds)} s, of which the reference {sig(s['seconds_render'])} s.")
     return " ".join(parts)
 

@@ -188,9 +188,9 @@ class Measured:
 
 
 def measure(renderer, scene, effort):
-    """Equal samples: several seeds a method. Equal time: as many samples as fit into the processor time that the slowest
-    method needs for equal samples, from the pace of the equal-sample renders; the slowest itself keeps those renders.
-    Seed after seed all methods take turns, so that a slow minute of the machine hits them alike."""
+    """Equal samples: several seeds a method. Equal time: as many samples as fit into the processor time that the
+    slowest method needs for equal samples, from the pace of the equal-sample renders; the slowest itself keeps
+    those renders. Seed after seed all methods take turns, so that a slow minute of the machine hits them alike."""
     picture = renderer.shrunk(scene, effort.shrink)
 
     def all_seeds(spp):

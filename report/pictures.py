@@ -36,7 +36,8 @@ def cost(render):
 
 def sheets(measured, heat_range):
     def pictures(renders, paint):
-        return [{"uri": data_uri(jpeg(paint(r[0])), "jpeg"), "caption": f"{i}: {cost(r[0])}"} for i, r in renders.items()]
+        return [{"uri": data_uri(jpeg(paint(r[0])), "jpeg"), "caption": f"{i}: {cost(r[0])}"}
+                for i, r in renders.items()]
 
     return [
         {"title": "Equal samples", "pictures": pictures(measured.equal_samples, lambda r: srgb(r.pixels()[0]))},
@@ -90,8 +91,8 @@ def crops(measured, scene):
         for i, render in renders.items():
             part = crop(srgb(render.pixels()[0]), place.info["rect"], *CROP).repeat(3, 0).repeat(3, 1)
             variance = f"<br>{sig(place.variance('samples', i).value)}" if i in INTEGRATORS else ""
-            pictures.append({"uri": data_uri(png(Image.fromarray(part)), "png"), "caption": f"<code>{i}</code>{variance}",
-                             "alt": f"{i}: {name(place)}"})
+            pictures.append({"uri": data_uri(png(Image.fromarray(part)), "png"),
+                             "caption": f"<code>{i}</code>{variance}", "alt": f"{i}: {name(place)}"})
         at = name(place)
         found.append({"title": f"<strong>{at[0].upper() + at[1:]}</strong>, the worst place of <code>{method}</code>, "
                                f"with the relative variance of each method", "pictures": pictures})

@@ -8,7 +8,6 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 from measure import INTEGRATORS  # noqa: E402
-from variance import decay  # noqa: E402
 
 COLORS = {"light": "#0072b2", "direct": "#d55e00", "average": "#7f7f7f", "mis": "#009e73"}
 MARKS = {"light": "o", "direct": "s", "average": "D", "mis": "^"}
@@ -37,8 +36,8 @@ def regions_plot(places):
         for k, i in enumerate(INTEGRATORS):
             found = [(at, p.variance("time", i)) for at, p in enumerate(places) if p.sampled["time"][i].is_found]
             axes.errorbar([at + 0.16 * (k - 1.5) for at, _ in found], [v.value for _, v in found],
-                          yerr=[[v.value - v.low for _, v in found], [v.high - v.value for _, v in found]], fmt=MARKS[i],
-                          color=COLORS[i], label=i, markersize=5, elinewidth=1)
+                          yerr=[[v.value - v.low for _, v in found], [v.high - v.value for _, v in found]],
+                          fmt=MARKS[i], color=COLORS[i], label=i, markersize=5, elinewidth=1)
         axes.set_yscale("log")
         axes.set_xticks(range(len(places)), [str(p.info["light"]) for p in places])
         for k, plate in enumerate(dict.fromkeys(p.info["plate"] for p in places)):
@@ -56,29 +55,27 @@ def regions_plot(places):
 
 
 def convergence_plot(panels):
-    """Relative variance against samples a pixel: for each (title, integrator -> points) the curves of all methods, each with
-    its slope, and for comparison a line that falls with 1 / samples."""
+    """Relative variance against samples a pixel: for each (title, integrator -> points) the curves of all methods, and
+    a line for comparison that falls with 1 / samples."""
     with matplotlib.rc_context(STYLE):
         figure, all_axes = plt.subplots((len(panels) + 1) // 2, 2, figsize=(7.6, 2.9 * ((len(panels) + 1) // 2)),
                                         layout="constrained")
         for axes, (title, curves) in zip(all_axes.ravel(), panels):
-            highest = max(v for points in curves.values() for _, v in points)
+            drawn = [point for points in curves.values() for point in points]
             for i in INTEGRATORS:
-                points = [(n, v) for n, v in curves[i] if v > 0]
-                fall = decay(curves[i])
-                label = i if fall is None else f"{i}: {fall[0]:.2f} ± {fall[1]:.2f}".replace("-", "−")
-                if points:
-                    axes.plot(*zip(*points), MARKS[i] + "-", color=COLORS[i], label=label, linewidth=1, markersize=4)
-            n = [curves["mis"][0][0], curves["mis"][-1][0]]
-            axes.plot(n, [2 * highest, 2 * highest * n[0] / n[1]], "--", color="#555555", linewidth=0.8, label="−1")
+                axes.plot([n for n, _ in curves[i]], [v for _, v in curves[i]], MARKS[i] + "-", color=COLORS[i],
+                          label=i, linewidth=1, markersize=4)
+            n, highest = [min(drawn)[0], max(drawn)[0]], max(v for _, v in drawn)
+            axes.plot(n, [2 * highest, 2 * highest * n[0] / n[1]], "--", color="#555555", linewidth=0.8, label="1/N")
             axes.set_xscale("log", base=2)
             axes.set_yscale("log")
             axes.xaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%d"))
             axes.set_title(title, fontsize=9)
-            axes.legend(frameon=False, fontsize=7, loc="lower left", labelspacing=0.2)
+        all_axes[0, 0].legend(ncols=5, loc="lower left", bbox_to_anchor=(0, 1.08), frameon=False, columnspacing=1.0)
         for axes in all_axes[-1]:
             axes.set_xlabel("samples a pixel")
         for axes in all_axes[:, 0]:
             axes.set_ylabel("relative variance")
-        return svg(figure, "convergence-plot", "Relative variance against samples a pixel, both logarithmic, for each method; "
+        return svg(figure, "convergence-plot", "Relative variance against samples a pixel, both logarithmic, for "
+                           "each method; "
                    "the slopes are in the table below")

@@ -1,7 +1,7 @@
 """What the geometry alone predicts for the mirror image of a round light in a Phong plate.
 
-Directions around the mirror direction are taken as points of a plane, in radians. The samples are independent, the plate
-has no diffuse part, and no other light is near.
+Directions around the mirror direction are taken as points of a plane, in radians. The samples are independent, the
+plate has no diffuse part, and no other light is near.
 """
 import math
 

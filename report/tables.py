@@ -53,7 +53,8 @@ def check_words(scene):
     text = f"The renderer's own standard errors and the seeds agree on the variance within {sig(100 * apart, 2)} %. "
     worst = max(abs(a.mean - b.mean) / math.hypot(a.mean_error, b.mean_error) for a in s for b in s if a is not b)
     if worst < 4:  # six pairs: larger by chance in less than one report in 2000
-        return text + (f"The means of the four methods, which share no sample, differ by at most {sig(worst, 2)} standard "
+        return text + (f"The means of the four methods, which share no sample, differ by at most {sig(worst, 2)} "
+                       f"standard "
                        f"errors, as unbiased estimates of one picture do.")
     return text + (f"<strong>The means of two methods differ by {sig(worst, 2)} standard errors: more than chance "
                    f"explains easily.</strong>")
@@ -86,7 +87,8 @@ def lights_words(scene):
              for i in INTEGRATORS}
     end = scene.reference.size * (1 - scene.lights_end)
     share = {i: 1 - scene.lit.variance("samples", i).value * scene.lit.mean ** 2 * end / total[i] for i in INTEGRATORS}
-    return ("The camera also sees the lights, above the plates, and at the rim of a small bright light a pixel is noisy with "
+    return ("The camera also sees the lights, above the plates, and at the rim of a small bright light a pixel is "
+            "noisy with "
             "every method alike. That strip holds "
             + ", ".join(f"{sig(100 * share[i], 2)} % of the variance of <code>{i}</code>" for i in INTEGRATORS)
             + ". The tables leave it out; their last column has it in.")

@@ -12,16 +12,17 @@ from answers import one_in  # noqa: E402
 from formulas import FORMULAS, as_image, formula  # noqa: E402
 from images import luminance, pack, srgb, unpack  # noqa: E402
 from intervals import Estimate, jackknife, mean_of, slope  # noqa: E402
-from measure import FIRST_SEED, FULL, QUICK, REFERENCE_SEED, minutes  # noqa: E402
+from measure import FIRST_SEED, FULL, INTEGRATORS, QUICK, REFERENCE_SEED, minutes  # noqa: E402
 from predict import hit_chance, relative_variances, spread  # noqa: E402
-from variance import (Place, Sampled, half_maximum_angle_deg, highlight_width_px, is_found, pixels_of,  # noqa: E402
-                      sampled, trimmed)
+from variance import (Place, Sampled, convergence, half_maximum_angle_deg, highlight_width_px,  # noqa: E402
+                      is_found, pixels_of, sampled, trimmed)
 from words import interval, keyed, sig  # noqa: E402
 
 
 def a_place(**values):
     """A place with these relative variances, known within 2 %; None for a mean that was not found."""
-    methods = {i: Sampled(Estimate(v or 0.0, 0.01, 4), 1.0 if v else 0.0, 0.1, v is not None) for i, v in values.items()}
+    methods = {i: Sampled(Estimate(v or 0.0, 0.01, 4), 1.0 if v else 0.0, 0.1, v is not None)
+               for i, v in values.items()}
     return Place({}, 1.0, {"samples": methods, "time": methods})
 
 
@@ -94,6 +95,17 @@ class Statistics(unittest.TestCase):
             inside["mean"] += mean.low <= 10 <= mean.high
         for name, count in inside.items():
             self.assertTrue(0.91 <= count / 400 <= 0.99, f"{name}: {count / 400}")
+
+    def test_convergence_has_no_point_where_the_mean_was_not_found(self):
+        def render(spp, value, error):
+            return SimpleNamespace(stats={"spp": spp},
+                                   pixels=lambda: (np.full((8, 8, 3), value), np.full((8, 8, 3), error)))
+
+        few = [render(8, 0.5, 0.01), render(16, 1.0, 0.2)]  # half of the light at 8
+        measured = SimpleNamespace(convergence={i: few for i in INTEGRATORS} | {"mis": [render(16, 1.0, 0.1)]})
+        curves = convergence(measured, {"regions": []})["image"]
+        self.assertEqual([n for n, _ in curves["average"]], [16])
+        self.assertAlmostEqual(curves["average"][0][1], 0.04)
 
     def test_jackknife_of_a_constant(self):
         self.assertEqual(jackknife(2.0, [2.0, 2.0, 2.0]).log_error, 0)

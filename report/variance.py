@@ -97,16 +97,16 @@ def seed_variance(lum):
     return total, [np.delete(lum, k, axis=0).var(axis=0, ddof=1).mean() for k in range(len(lum))]
 
 
-def sampled(lum, reference, reference_variance):
-    """`lum` has the luminances of the place for each seed; the reference is that of the same pixels, with the variance of
-    its mean."""
+def sampled(lum, reference, reference_error):
+    """`lum` has the luminances of the place for each seed; the reference is that of the same pixels, with the standard
+    error of its mean."""
     total, left_out = seed_variance(lum)
     mean, scale = lum.mean(), reference.mean() ** 2
     error = math.sqrt(total / lum.size)
     if scale == 0:  # black in the reference
         return Sampled(Estimate(0.0, 0.0, len(lum) - 1), mean, error, False)
     return Sampled(jackknife(total / scale, [v / scale for v in left_out]), mean, error,
-                   is_found(mean, error, reference.mean(), math.sqrt(reference_variance)))
+                   is_found(mean, error, reference.mean(), reference_error))
 
 
 def is_found(mean, error, reference, reference_error):
@@ -129,8 +129,7 @@ def evaluate(measured, layout):
             pixels = [[p.astype(np.float64) for p in r.pixels()] for r in renders[i]]
             lum = np.stack([luminance(p[0]) for p in pixels])
             for place, at in zip(places, where):
-                place.sampled[budget][i] = sampled(lum[(slice(None), *at)], reference[at],
-                                                   (error[at] ** 2).mean() / reference[at].size)
+                place.sampled[budget][i] = sampled(lum[(slice(None), *at)], reference[at], error_of_mean(error[at]))
             scale = reference[lit].mean() ** 2
             methods[budget][i] = Method(
                 renders[i][0].stats["spp"], mean_of([r.stats["processor_seconds"] for r in renders[i]]),
@@ -142,29 +141,33 @@ def evaluate(measured, layout):
 
 
 def convergence(measured, layout):
-    """Relative variances from the standard errors over replicates, against the samples: of the image without the lights,
-    and of the places that `layout` names."""
-    kept, means = {}, {}
-    last = luminance(measured.convergence["mis"][-1].pixels()[0].astype(np.float64))
+    """Relative variances from the standard errors over replicates, against the samples: of the image without the
+    lights, and of the places that `layout` names; no point where the mean was not found."""
+    kept = {}
+    last, last_error = (luminance(p.astype(np.float64)) for p in measured.convergence["mis"][-1].pixels())
     where = {"image": (slice(round(layout.get("lights_end", 0) * last.shape[0]), None), slice(None))}
     where |= {(info["plate"], info["light"]): pixels_of(info["rect"], last.shape) for info in layout["regions"]
               if "plate" in info}
     for name, at in where.items():
-        means[name] = last[at].mean() if last[at].size else 0
-    for i, renders in measured.convergence.items():
-        for r in renders:
-            variance = luminance(r.pixels()[1].astype(np.float64)) ** 2
-            for name, at in where.items():
-                if means[name] > 0:
-                    kept.setdefault(name, {}).setdefault(i, []).append(
-                        (r.stats["spp"], variance[at].mean() / means[name] ** 2))
+        kept[name] = {i: [] for i in INTEGRATORS}
+        mean, mean_error = last[at].mean(), error_of_mean(last_error[at])
+        for i, renders in measured.convergence.items():
+            for r in renders:
+                lum, error = (luminance(p.astype(np.float64))[at] for p in r.pixels())
+                if is_found(lum.mean(), error_of_mean(error), mean, mean_error):
+                    kept[name][i].append((r.stats["spp"], (error ** 2).mean() / mean ** 2))
     return kept
 
 
+def error_of_mean(errors):
+    """Standard error of the mean over pixels with these standard errors."""
+    return math.sqrt((errors ** 2).sum()) / errors.size
+
+
 def decay(points):
-    """Power of the number of samples with which the variance falls, and half of its 95 % interval; None where a variance
-    is 0."""
-    if min(v for _, v in points) <= 0 or len(points) < 3:
+    """Power of the number of samples with which the variance falls, and half of its 95 % interval; None where there are
+    too few points."""
+    if len(points) < 3 or min(v for _, v in points) <= 0:
         return None
     return slope([math.log(n) for n, _ in points], [math.log(v) for _, v in points])
 

@@ -47,7 +47,8 @@
   }
   const srgb = (v) => srgbTable[v >= 1 ? 4095 : v <= 0 ? 0 : Math.round(Math.sqrt(v) * 4095)];
   const luminance = (rgb, i) => WEIGHTS[0] * rgb[3 * i] + WEIGHTS[1] * rgb[3 * i + 1] + WEIGHTS[2] * rgb[3 * i + 2];
-  const number = (v) => (v === 0 ? "0" : Math.abs(v) >= 100 || Math.abs(v) < 0.001 ? v.toExponential(2) : v.toPrecision(3));
+  const number = (v) =>
+    (v === 0 ? "0" : Math.abs(v) >= 100 || Math.abs(v) < 0.001 ? v.toExponential(2) : v.toPrecision(3));
 
   class Viewer {
     constructor(root) {
@@ -267,7 +268,7 @@
       return painted.canvas;
     }
 
-    /** The difference at full colour: 99 of 100 pixels of what is shown, and of what it is compared with, are within it. */
+    /** The difference at full colour: 99 of 100 pixels of what is shown are within it. */
     differenceEnd() {
       const s = this.state;
       const shown = s.blink || s.split >= 0 ? [s.method, s.against] : [s.method];
@@ -282,7 +283,8 @@
       if (!pixels || !reference || pixels === reference) return pixels === reference ? 1e-6 : 1;
       if (pixels.usualDifference === undefined) {
         const sizes = new Float32Array(pixels.error.length);
-        for (let i = 0; i < sizes.length; ++i) sizes[i] = Math.abs(luminance(pixels.rgb, i) - luminance(reference.rgb, i));
+        for (let i = 0; i < sizes.length; ++i)
+          sizes[i] = Math.abs(luminance(pixels.rgb, i) - luminance(reference.rgb, i));
         sizes.sort();
         const least = Math.max(1e-6, sizes[Math.floor(0.99 * sizes.length)]);
         const decade = 10 ** Math.floor(Math.log10(least));

@@ -6,7 +6,7 @@ usage: check_names.py ROOT         check the project at ROOT
 
 Looked at is what stands in `backquotes` or <code>:
 - a path below a folder of the project, and a C++ or Python file by its name alone, exists;
-- `name` in `file`, `name` (`file`), and names in the cell next to that of a file in a table: the file declares the name;
+- `name` in `file`, `name` (`file`), names in the cell next to that of a file in a table: the file declares it;
 - any other name with _ or :: or capitals inside occurs somewhere in the code.
 """
 
@@ -14,7 +14,8 @@ import pathlib
 import re
 import sys
 
-PAGES = ("README.md", "CONTRIBUTING.md", "docs/*.md", "report/template.html.j2", "report/answers.py", "report/tables.py")
+PAGES = ("README.md", "CONTRIBUTING.md", "docs/*.md", "report/template.html.j2", "report/answers.py",
+         "report/tables.py")
 CODE = ("src", "apps", "tests", "bench", "cmake", "report", "scripts", "scenes")
 CODE_FILES = (".h", ".cpp", ".py", ".sh", ".js", ".cmake", ".txt", ".xml", ".in", ".css", ".json", ".j2")
 PATH = re.compile(r"(?:src|apps|tests|bench|cmake|report|scripts|scenes|docs)/[\w./*-]*")
@@ -23,7 +24,8 @@ NAME = re.compile(r"~?[A-Za-z_]\w*(?:::~?[A-Za-z_]\w*)*(?:<F>)?(?:\(\))?")
 QUOTED = re.compile(r"`([^`\n]+)`|<code>([^<]+)</code>")
 IN_FILE = re.compile(r"\x01(\d+)\x01\s+(?:in\s+|\()(?:the\s+\w+\s+)?\x01(\d+)\x01")
 # The exercise's own names, and words of other programs
-FOREIGN = {"Li", "sampleLights", "samplePosition", "Mesh::samplePosition", "Mesh::pdf", "GROUP_NUMBER", "light_integrator.cpp"}
+FOREIGN = {"Li", "sampleLights", "samplePosition", "Mesh::samplePosition", "Mesh::pdf", "GROUP_NUMBER",
+           "light_integrator.cpp"}
 
 
 def is_path(token):
@@ -42,7 +44,8 @@ def is_telling(token):
 class Project:
     def __init__(self, root):
         self.root = root
-        files = [f for folder in CODE for f in (root / folder).rglob("*") if f.is_file() and "__pycache__" not in f.parts]
+        files = [f for folder in CODE for f in (root / folder).rglob("*")
+                 if f.is_file() and "__pycache__" not in f.parts]
         self.names = {f.name for f in files} | {f.name for f in root.glob("*") if f.is_file()}
         self.text = {f: f.read_text(errors="replace") for f in files if f.suffix in CODE_FILES}
         # what only a check or the page itself says is no proof that the code has it
@@ -62,13 +65,15 @@ class Project:
         return "\n".join(t for f, t in self.text.items() if f == self.root / path or (self.root / path) in f.parents)
 
     def defines(self, name, files):
-        """Whether one of the files declares a name, or sets a member of that name, rather than only use it; for files that are not C++, has it."""
+        """Whether one of the files declares a name or sets a member of that name, rather than only use it; or has it,
+        for files that are not C++."""
         last = re.findall(r"\w+", name.removesuffix("<F>"))[-1]
         declared = re.compile(rf"\b(?:struct|class|enum|concept|using|#define)\s+{last}\b"
-                              rf"|^\s*(?!return\b|throw\b)(?:[\w:<>,&*\[\]]+\s+)+[&*]*(?:\w+::)*{last}\s*(?:<[^>]*>)?\s*[({{=;]"
+                              rf"|^\s*(?!return\b|throw\b)(?:[\w:<>,&*\[\]]+\s+)+[&*]*(?:\w+::)*{last}"
+                              r"\s*(?:<[^>]*>)?\s*[({=;]"
                               rf"|^\s*{last}(?: = [^;]*)?,\s*(?:/|$)|\b{last},?.*\}};$|\.{last}\s*=[^=]", re.M)
-        return any(declared.search(self.file_text(f)) if f.endswith((".h", ".cpp")) else self.has(name, self.file_text(f))
-                   for f in files)
+        return any(declared.search(text) if f.endswith((".h", ".cpp")) else self.has(name, text)
+                   for f, text in ((f, self.file_text(f)) for f in files))
 
     def has(self, name, text=None):
         """Whether each part of a name is a word of the text, or of any code."""
@@ -127,16 +132,19 @@ def self_test():
     import tempfile
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
-        for file, text in {"src/a/one.h": "struct One { int first_thing(); };", "src/a/two.h": "void other_thing();\nvoid more() {\n  return first_thing();\n}"}.items():
+        files = {"src/a/one.h": "struct One { int first_thing(); };",
+                 "src/a/two.h": "void other_thing();\nvoid more() {\n  return first_thing();\n}"}
+        for file, text in files.items():
             (root / file).parent.mkdir(parents=True, exist_ok=True)
             (root / file).write_text(text)
         project = Project(root)
-        right = ["`src/a/one.h`", "`one.h`", "`src/a/`", "`One::first_thing` in `src/a/one.h`", "`other_thing()` (`two.h`)",
-                 "| 1 | `src/a/one.h` | `One`, `first_thing` |", "`scene.xml`", "`plain`", "<code>first_thing</code>",
-                 "`first_thing<F>` in\n<code>one.h</code>", "```\nsrc/a/gone.h `gone_thing`\n```"]
-        wrong = ["`src/a/gone.h`", "`gone.h`", "`gone_thing`", "`other_thing` in `src/a/one.h`", "`other_thing` (`one.h`)",
-                 "`first_thing` in `src/a/two.h`",
-                 "| 1 | `src/a/one.h` | `other_thing` |", "<code>One::gone</code>", "<code>other_thing</code> in\n<code>one.h</code>"]
+        right = ["`src/a/one.h`", "`one.h`", "`src/a/`", "`One::first_thing` in `src/a/one.h`",
+                 "`other_thing()` (`two.h`)", "| 1 | `src/a/one.h` | `One`, `first_thing` |", "`scene.xml`",
+                 "`plain`", "<code>first_thing</code>", "`first_thing<F>` in\n<code>one.h</code>", "```\nsrc/a/gone.h `gone_thing`\n```"]
+        wrong = ["`src/a/gone.h`", "`gone.h`", "`gone_thing`", "`other_thing` in `src/a/one.h`",
+                 "`other_thing` (`one.h`)", "`first_thing` in `src/a/two.h`",
+                 "| 1 | `src/a/one.h` | `other_thing` |", "<code>One::gone</code>",
+                 "<code>other_thing</code> in\n<code>one.h</code>"]
         bad = [t for t in right if list(problems("page", t, project))] + [
             t for t in wrong if not list(problems("page", t, project))]
     for text in bad:
