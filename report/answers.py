@@ -92,7 +92,7 @@ def materials(scene, places, layout):
     text += ("<p>They have the same colours" if same else "<p>They differ in their colours")
     text += (f" (<i>k<sub>d</sub></i> about {sig(sum(kd) / 3, 2)}, <i>k<sub>s</sub></i> about {sig(sum(ks) / 3, 2)}: "
              "much more gloss than diffuse reflection) and differ in the exponent <i>n</i>: ")
-    text += ", ".join(f"{r['name']} {r['n']:,}".replace(",", " ") for r in rows) + ". "
+    text += ", ".join(f"{r['name']} {r['n']:,}".replace(",", "\u00a0") for r in rows) + ". "
     if grows:
         text += ("The picture shows it: the same small light 1 is mirrored as a spot that is "
                  + ", ".join(f"{r['measured_px']} pixels wide in the {r['name']} plate" for r in rows)

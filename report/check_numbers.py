@@ -60,7 +60,7 @@ class Section(html.parser.HTMLParser):
 
 def shown_value(text):
     """The number that a text shows, and half of a unit in its last place."""
-    mantissa, _, exponent = text.replace("−", "-").replace(" ", "").partition("·10")
+    mantissa, _, exponent = text.replace("−", "-").replace(" ", "").replace("\u00a0", "").partition("·10")
     scale = 10.0 ** int(exponent or 0)
     digits = len(mantissa.partition(".")[2])
     value = float(mantissa)

@@ -71,7 +71,9 @@ def convergence_plot(panels):
             axes.set_yscale("log")
             axes.xaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%d"))
             axes.set_title(title, fontsize=9)
-        all_axes[0, 0].legend(ncols=5, loc="lower left", bbox_to_anchor=(0, 1.08), frameon=False, columnspacing=1.0)
+        figure.suptitle(" ")  # room for the legend
+        figure.legend(*all_axes[0, 0].get_legend_handles_labels(), ncols=5, loc="upper center", frameon=False,
+                      columnspacing=1.0)
         for axes in all_axes[-1]:
             axes.set_xlabel("samples a pixel")
         for axes in all_axes[:, 0]:

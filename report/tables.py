@@ -77,7 +77,7 @@ def slope_rows(panels):
     rows = []
     for i in INTEGRATORS:
         falls = [decay(curves[i]) for _, curves in panels]
-        rows.append({"method": i, "cells": [f"{sig(f[0], 2)} ± {sig(f[1], 1)}" if f else "–" for f in falls]})
+        rows.append({"method": i, "cells": [f"{f[0]:.2f} ± {f[1]:.2f}".replace("-", "−") if f else "–" for f in falls]})
     return rows
 
 

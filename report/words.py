@@ -11,7 +11,7 @@ def sig(value, digits=3):
         return f"{base} · 10<sup>{int(exponent)}</sup>".replace("-", "−")
     rounded = float(f"{value:.{digits - 1}e}")
     places = max(0, digits - 1 - math.floor(math.log10(abs(rounded))))
-    return f"{rounded:,.{places}f}".replace(",", " ").replace("-", "−")
+    return f"{rounded:,.{places}f}".replace(",", "\u00a0").replace("-", "−")
 
 
 def times(ratio):
