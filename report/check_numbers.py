@@ -170,7 +170,7 @@ class Recomputed:
             noise_sq += (self.reference_error[at] ** 2).sum() / count ** 2
             if abs(np.mean(here) - self.reference[at].mean()) <= 4 * math.sqrt(noise_sq):
                 found.add(i)
-        better = min(found & {"light", "direct"}, key=variance.get)
+        better = min(found & {"light", "direct"} or {"light", "direct"}, key=variance.get)
         for i in found & {"average", "mis"}:
             ratio, error = variance[i] / variance[better], error_sq[i] + error_sq[better]
             self.ratios[i].append((ratio, error))

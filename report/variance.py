@@ -36,9 +36,9 @@ class Place:
         return [i for i in INTEGRATORS if self.sampled[budget][i].is_found]
 
     def best_single(self, budget):
-        """The better one of `light` and `direct`."""
-        return min((i for i in ("light", "direct") if self.sampled[budget][i].is_found),
-                   key=lambda i: self.variance(budget, i).value)
+        """The better one of `light` and `direct`, if any has found the mean."""
+        found = [i for i in ("light", "direct") if self.sampled[budget][i].is_found]
+        return min(found or ("light", "direct"), key=lambda i: self.variance(budget, i).value)
 
     def over_best(self, budget, integrator):
         """Variance of a method over that of the better one of `light` and `direct`."""
