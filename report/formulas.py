@@ -48,13 +48,12 @@ FORMULAS = {
                      r"\dfrac{2\,\mathrm{Var}\,A+2\,\mathrm{Var}\,B}{4}=\dfrac{\mathrm{Var}\,A+\mathrm{Var}\,B}{2}$",
                      "with half the samples from each, the variance of the average is the mean of the two variances"),
     "mis": (r"$\hat{L}=w_A(\omega_A)\,\dfrac{f(\omega_A)}{p_A(\omega_A)}+w_B(\omega_B)\,\dfrac{f(\omega_B)}"
-            r"{p_B(\omega_B)},\qquad w_A(\omega)=\dfrac{p_A(\omega)}{p_A(\omega)+p_B(\omega)},\quad w_B=1-w_A$",
-            "the estimate is w A of omega A times f over p A, plus w B of omega B times f over p B; w A is p A over "
-            "p A plus p B; w B is one minus w A"),
-    "relative_variance": (r"$v=\dfrac{\mathrm{mean\ over\ pixels\ of\ Var}}{(\mathrm{mean\ luminance})^2},\qquad"
-                          r"\mathrm{efficiency}=\dfrac{1}{v\cdot\mathrm{seconds}}$",
-                          "v is the mean over pixels of the variance, over the squared mean luminance; efficiency is "
-                          "one over v times seconds"),
+            r"{p_B(\omega_B)},$",
+            "the estimate is w A of omega A times f over p A, plus w B of omega B times f over p B"),
+    "mis_weight": (r"$w_A(\omega)=\dfrac{p_A(\omega)}{p_A(\omega)+p_B(\omega)},\quad w_B=1-w_A$",
+                   "w A is p A over p A plus p B; w B is one minus w A"),
+    "relative_variance": (r"$v=\dfrac{\mathrm{mean\ over\ pixels\ of\ Var}}{(\mathrm{mean\ luminance})^2}$",
+                          "v is the mean over pixels of the variance, over the squared mean luminance"),
 }
 
 

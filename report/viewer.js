@@ -47,7 +47,8 @@
   }
   const srgb = (v) => srgbTable[v >= 1 ? 4095 : v <= 0 ? 0 : Math.round(Math.sqrt(v) * 4095)];
   const luminance = (rgb, i) => WEIGHTS[0] * rgb[3 * i] + WEIGHTS[1] * rgb[3 * i + 1] + WEIGHTS[2] * rgb[3 * i + 2];
-  const number = (v) => (v === 0 ? "0" : Math.abs(v) >= 100 || Math.abs(v) < 0.001 ? v.toExponential(2) : v.toPrecision(3));
+  const number = (v) =>
+    (v === 0 ? "0" : Math.abs(v) >= 100 || Math.abs(v) < 0.001 ? v.toExponential(2) : v.toPrecision(3));
 
   class Viewer {
     constructor(root) {
@@ -87,7 +88,7 @@
       this.root.addEventListener("keydown", (e) => this.key(e));
       const c = this.canvas;
       c.addEventListener("wheel", (e) => {
-        if (!e.ctrlKey && document.activeElement !== c && this.state.zoom === 1 && e.deltaY > 0) return;  // scroll on
+        if (!e.ctrlKey && document.activeElement !== c) return;  // the page scrolls
         e.preventDefault();
         const p = this.fraction(e);
         this.zoomAt(2 ** (-e.deltaY / (e.deltaMode ? 6 : 240)), p.x, p.y);
@@ -126,6 +127,7 @@
         E: () => this.set({ exposure: Math.min(8, s.exposure + 0.5) }),
         "+": () => this.zoomAt(2, 0.5, 0.5), "=": () => this.zoomAt(2, 0.5, 0.5), "-": () => this.zoomAt(0.5, 0.5, 0.5),
         0: () => this.set({ zoom: 1, x: 0.5, y: 0.5, exposure: 0 }),
+        Escape: () => this.canvas.blur(),
       };
       if (!onRange && e.target === this.canvas) {
         actions.ArrowLeft = () => this.set({ x: s.x - step });
@@ -226,7 +228,8 @@
       const pixels = this.pixels(source);
       const reference = view === "difference" ? this.pixels("reference") : null;
       if (!pixels || reference === undefined) return null;
-      const key = `${view} ${exposure}`;
+      const end = view === "difference" ? this.differenceEnd() : 0;
+      const key = `${view} ${exposure} ${end}`;
       let painted = this.painted.get(source);
       if (painted && painted.key === key) return painted.canvas;
       const { width, height, heat, colors } = this.data;
@@ -251,8 +254,8 @@
           const k = 3 * Math.round(t * 255);
           for (let c = 0; c < 3; ++c) out.data[4 * i + c] = colors[k + c];
         } else {
-          // difference: red too bright, blue too dark, white equal; full colour at half of the white of the image
-          const d = (luminance(pixels.rgb, i) - luminance(reference.rgb, i)) * gain * 2;
+          // difference: red too bright, blue too dark, white equal
+          const d = (luminance(pixels.rgb, i) - luminance(reference.rgb, i)) / end;
           const t = Math.min(1, Math.abs(d));
           const low = Math.round(245 * (1 - t));
           out.data[4 * i] = d > 0 ? 245 - 40 * t : low;
@@ -263,6 +266,31 @@
       }
       context.putImageData(out, 0, 0);
       return painted.canvas;
+    }
+
+    /** The difference at full colour: 99 of 100 pixels of what is shown are within it. */
+    differenceEnd() {
+      const s = this.state;
+      const shown = s.blink || s.split >= 0 ? [s.method, s.against] : [s.method];
+      const ends = shown.map((method) => this.usualDifference(this.source(method)));
+      return Math.max(...ends) / 2 ** s.exposure;
+    }
+
+    /** The 99th percentile of the absolute difference to the reference, rounded up to 1, 2 or 5 times a power of ten; 1
+     *  while the pixels are being decoded. */
+    usualDifference(source) {
+      const pixels = this.pixels(source), reference = this.pixels("reference");
+      if (!pixels || !reference || pixels === reference) return pixels === reference ? 1e-6 : 1;
+      if (pixels.usualDifference === undefined) {
+        const sizes = new Float32Array(pixels.error.length);
+        for (let i = 0; i < sizes.length; ++i)
+          sizes[i] = Math.abs(luminance(pixels.rgb, i) - luminance(reference.rgb, i));
+        sizes.sort();
+        const least = Math.max(1e-6, sizes[Math.floor(0.99 * sizes.length)]);
+        const decade = 10 ** Math.floor(Math.log10(least));
+        pixels.usualDifference = decade * [1, 2, 5, 10].find((step) => step * decade >= least * 0.999999);
+      }
+      return pixels.usualDifference;
     }
 
     draw() {
@@ -281,6 +309,11 @@
         return;
       }
       this.root.classList.remove("loading");
+      if (s.view === "difference") {
+        const end = number(this.differenceEnd());
+        this.$(".difference-low").textContent = `−${end}`;
+        this.$(".difference-high").textContent = `+${end}`;
+      }
       const { width, height } = this.data;
       context.imageSmoothingEnabled = s.zoom * w < 1.5 * width;
       const place = [(s.x - 0.5 / s.zoom) * width, (s.y - 0.5 / s.zoom) * height, width / s.zoom, height / s.zoom];
@@ -317,9 +350,6 @@
       this.$(".zoom-value").textContent = `${Math.round(100 * s.zoom) / 100}×`;
       this.$(".scale-error").hidden = s.view !== "error";
       this.$(".scale-difference").hidden = s.view !== "difference";
-      const end = number(0.5 / 2 ** s.exposure);
-      this.$(".difference-low").textContent = `−${end}`;
-      this.$(".difference-high").textContent = `+${end}`;
       this.$(".cost").textContent = this.data.costs[this.source(s.method)];
       this.draw();
       this.say(this.last);
