@@ -52,10 +52,13 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--stats", options.stats_file, "JSON file for settings, times and counts");
   command.add_option("--replay", options.replay,
                      "X,Y,REPLICATE,SAMPLE: compute only this sample, and print each step of it");
-  command.add_flag("--quiet", options.is_quiet,
-                   "No progress and no warnings about the scene; bad samples, and images that went "
-                   "to another name, are still reported");
-  command.add_flag("--strict", options.is_strict, "Warnings, such as an unknown key, are errors");
+  command.add_flag(
+      "--quiet", options.is_quiet,
+      "No progress and no warnings about the file; what makes an image wrong or black, bad samples, and "
+      "images that went to another name, are still reported");
+  command.add_flag("--strict", options.is_strict,
+                   "Warnings, such as an unknown key or a lamp that lights nothing, are errors; harmless "
+                   "findings are not");
   command.add_flag("--sample-order", options.is_in_sample_order,
                    "Trace shadow rays in sample order, not aimed: slower, the same image");
   command.add_flag(

@@ -76,26 +76,25 @@ void add_inside(const LintContext& context, std::int32_t id, Findings& findings)
                turn_shape_round(context.scene.geometry.sphere[at] >= 0));
 }
 
-/// A shape whose back all rays from the camera meet, whatever their direction; or a sphere of which some meet
-/// the back, as no camera outside of it can see.
+/// A sphere whose back is in view, as it is for no camera outside; or a shape whose back all rays from the
+/// camera meet, whatever their direction.
 void check_inside(const LintContext& context, Findings& findings) {
   const Scene& scene = context.scene;
+  const auto is_black_back = [&](const std::optional<ProbeHit>& hit) {
+    return hit && !hit->is_front && !context.material_of(*hit).is_two_sided;
+  };
+  for (const View::Seen& seen : context.view.rays)
+    if (is_black_back(seen.hit) && scene.geometry.sphere[std::size_t(seen.hit->hit.geometry)] >= 0)
+      return add_inside(context, seen.hit->hit.geometry, findings);
   ProbeNumbers numbers(2);
   std::int32_t around = -1;
-  bool is_around = true;
   constexpr int rays = 64;
   for (int k = 0; k < rays; ++k) {
     const auto hit = probe(scene, {scene.camera.origin, square_to_uniform_sphere(numbers.two_units())});
-    if (!hit || hit->is_front || context.material_of(*hit).is_two_sided) {
-      is_around = false;
-      continue;
-    }
-    if (scene.geometry.sphere[std::size_t(hit->hit.geometry)] >= 0)
-      return add_inside(context, hit->hit.geometry, findings);
-    is_around = is_around && (around < 0 || around == hit->hit.geometry);
+    if (!is_black_back(hit) || (around >= 0 && around != hit->hit.geometry)) return;
     around = hit->hit.geometry;
   }
-  if (is_around) add_inside(context, around, findings);
+  add_inside(context, around, findings);
 }
 
 void check_default_clip(const LintContext& context, Findings& findings) {
