@@ -57,6 +57,7 @@ struct Camera {
   /// \param scene around all that rays can meet
   void approach(const Sphere& scene);
 
+  Vec3f eye() const { return narrow(origin); }
   static Vec3f narrow(const Vec3<double>& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
  private:

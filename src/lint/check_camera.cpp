@@ -25,16 +25,16 @@ void check_clip_planes(const LintContext& context, Findings& findings) {
   for (const View::Seen& seen : view.rays) {
     if (!seen.unclipped) continue;
     // Clip planes are distances along the axis, which each ray knows by its own.
-    const float t = seen.unclipped->hit.t;
+    const float t = seen.unclipped->hit.t + camera.start_depth;
     nearest = std::min(nearest, t);
     farthest = std::max(farthest, t);
-    behind_far += !seen.hit && t >= seen.t_far;
+    behind_far += !seen.hit && seen.unclipped->hit.t >= seen.t_far;
   }
   const Location& where = context.places.far_clip.value_or(context.places.camera);
   const std::string told = fmt::format(
       "the clip planes are at {:.4g} and {:.4g} m, what is in view is {:.4g} to "
       "{:.4g} m away",
-      camera.near_clip, camera.far_clip, nearest, farthest);
+      camera.near_clip + camera.start_depth, camera.far_clip + camera.start_depth, nearest, farthest);
   const std::string remedy =
       fmt::format("set farClip beyond {:.2g}{}", 2 * farthest,
                   nearest > 1000 ? "; if these are millimetres, scale the scene by 0.001"
@@ -90,7 +90,7 @@ void check_inside(const LintContext& context, Findings& findings) {
   std::int32_t around = -1;
   constexpr int rays = 64;
   for (int k = 0; k < rays; ++k) {
-    const auto hit = probe(scene, {scene.camera.origin, square_to_uniform_sphere(numbers.two_units())});
+    const auto hit = probe(scene, {scene.camera.eye(), square_to_uniform_sphere(numbers.two_units())});
     if (!is_black_back(hit) || (around >= 0 && around != hit->hit.geometry)) return;
     around = hit->hit.geometry;
   }
@@ -99,10 +99,11 @@ void check_inside(const LintContext& context, Findings& findings) {
 
 void check_default_clip(const LintContext& context, Findings& findings) {
   constexpr float default_in_nori = 1e4f;
-  const float far_clip = context.scene.camera.far_clip;
-  const bool is_used =
-      std::any_of(context.view.rays.begin(), context.view.rays.end(),
-                  [](const View::Seen& seen) { return seen.hit && seen.hit->hit.t > default_in_nori; });
+  const float start_depth = context.scene.camera.start_depth;
+  const float far_clip = context.scene.camera.far_clip + start_depth;
+  const bool is_used = std::any_of(
+      context.view.rays.begin(), context.view.rays.end(),
+      [&](const View::Seen& seen) { return seen.hit && seen.hit->hit.t + start_depth > default_in_nori; });
   if (context.places.far_clip || far_clip <= default_in_nori || !is_used) return;
   findings.add(
       "clip-default-moved", context.places.camera,
@@ -133,7 +134,7 @@ void check_backs(const LintContext& context, Findings& findings) {
 void check_units(const LintContext& context, Findings& findings) {
   std::vector<float> distances;
   for (const View::Seen& seen : context.view.rays)
-    if (seen.unclipped) distances.push_back(seen.unclipped->hit.t);
+    if (seen.unclipped) distances.push_back(seen.unclipped->hit.t + context.scene.camera.start_depth);
   if (distances.empty()) return;
   const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());

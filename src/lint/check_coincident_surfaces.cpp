@@ -242,9 +242,9 @@ class PairSearch {
 /// Whether light or the camera sees the place from the side that `ng` points to, as neither does inside of
 /// solids.
 bool is_seen_from(const LintContext& context, const Vec3f& place, const Vec3f& ng) {
-  const Vec3f from = place + ng * ray_clearance(place, 0.0f);
-  if (dot(context.scene.camera.origin - from, ng) > 0 &&
-      is_visible(context.scene, from, context.scene.camera.origin))
+  const Vec3f from = place + ng * clearance<float>(ng, abs_each(place), 0);
+  if (dot(context.scene.camera.eye() - from, ng) > 0 &&
+      is_visible(context.scene, from, context.scene.camera.eye()))
     return true;
   ProbeNumbers numbers(9);
   const Frame<float> frame(ng);
@@ -266,8 +266,9 @@ void report(const LintContext& context, const Pair& pair, Findings& findings) {
   const std::int32_t one = is_first || !is_second ? pair.a : pair.b, other = one == pair.a ? pair.b : pair.a;
   const ScenePlaces::Shape &shape = context.places.shapes[std::size_t(one)],
                            &in = context.places.shapes[std::size_t(other)];
-  const std::string where =
-      fmt::format("about {:.4g} {:.4g} {:.4g}", pair.middle.x, pair.middle.y, pair.middle.z);
+  const Vec3<double>& origin = context.scene.origin;
+  const std::string where = fmt::format("about {:.4g} {:.4g} {:.4g}", origin.x + pair.middle.x,
+                                        origin.y + pair.middle.y, origin.z + pair.middle.z);
   const std::string second =
       one == other ? "itself" : fmt::format("the {} (line {})", in.name, line_and_column(in.where).line);
   const std::string apart = "move them apart, if only by a millimetre";

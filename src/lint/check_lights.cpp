@@ -72,7 +72,7 @@ class LightRays {
     }
     const PointOnLight point = point_on(scene_.geometry, shape_, numbers_);
     const Vec3f ng = is_front_ ? point.ng : -point.ng;
-    return {point.position + ng * ray_clearance(point.position, 0.0f),
+    return {point.position + ng * clearance<float>(point.ng, abs_each(point.position), 0),
             Frame<float>(ng).world_from_local(square_to_cosine_hemisphere(numbers_.two_units()))};
   }
 
@@ -135,9 +135,9 @@ bool is_seen(const LintContext& context, std::int32_t shape) {
   const Camera& camera = context.scene.camera;
   for (int k = 0; k < 64; ++k) {
     const PointOnLight point = point_on(context.scene.geometry, shape, numbers);
-    const Vec3f from = point.position + point.ng * ray_clearance(point.position, 0.0f);
-    if (dot(camera.origin - from, point.ng) > 0 && is_in_view(camera, from) &&
-        is_visible(context.scene, from, camera.origin))
+    const Vec3f from = point.position + point.ng * clearance<float>(point.ng, abs_each(point.position), 0);
+    if (dot(camera.eye() - from, point.ng) > 0 && is_in_view(camera, from) &&
+        is_visible(context.scene, from, camera.eye()))
       return true;
   }
   return false;
@@ -153,10 +153,10 @@ Space space_around(const LintContext& context, LightRays rays) {
     std::optional<ProbeHit> at = probe(context.scene, rays.next());
     for (int k = 0; k < length; ++k) {
       if (!at) return Space::open;
-      const Vec3f to_camera = normalize(context.scene.camera.origin - at->vertex.position);
+      const Vec3f to_camera = normalize(context.scene.camera.eye() - at->vertex.position);
       const bool is_on_side = dot(at->vertex.ng, to_camera) * dot(at->vertex.ng, at->vertex.wo) > 0;
       if ((is_on_side || context.material_of(*at).is_two_sided) &&
-          is_visible(context.scene, at->vertex.offset_origin(to_camera), context.scene.camera.origin))
+          is_visible(context.scene, at->vertex.origin_of_ray(to_camera), context.scene.camera.eye()))
         return Space::open;
       at = probe(context.scene, ray_from(*at, next_direction(*at, context.material_of(*at), numbers)));
     }

@@ -77,13 +77,14 @@ View look(const Scene& scene) {
 }
 
 bool is_in_view(const Camera& camera, const Vec3f& place) {
-  const Vec3f x = camera.per_px_x, y = camera.per_px_y, to_corner = camera.at_film_origin;
-  const Vec3f along = place - camera.origin;
-  const float volume = dot(to_corner, cross(x, y)), depth = dot(along, cross(x, y)) / volume;
-  if (!(depth > camera.near_clip && depth < camera.far_clip)) return false;
-  const float column = dot(to_corner, cross(along, y)) / volume / depth,
-              row = dot(to_corner, cross(x, along)) / volume / depth;
-  return column >= 0 && row >= 0 && column <= float(camera.width_px) && row <= float(camera.height_px);
+  const Vec3<double> x = camera.per_px_x, y = camera.per_px_y, to_corner = camera.at_film_origin;
+  const Vec3<double> along = Vec3<double>{place.x, place.y, place.z} - camera.origin;
+  const double volume = dot(to_corner, cross(x, y)), depth = dot(along, cross(x, y)) / volume;
+  const double from_start = depth - camera.start_depth;
+  if (!(from_start > camera.near_clip && from_start < camera.far_clip)) return false;
+  const double column = dot(to_corner, cross(along, y)) / volume / depth,
+               row = dot(to_corner, cross(x, along)) / volume / depth;
+  return column >= 0 && row >= 0 && column <= camera.width_px && row <= camera.height_px;
 }
 
 bool is_lit_by(const Scene& scene, const ProbeHit& at, std::int32_t light, int tries, ProbeNumbers& numbers) {
@@ -95,7 +96,7 @@ bool is_lit_by(const Scene& scene, const ProbeHit& at, std::int32_t light, int t
         scene.lights.sample<float>(light, 1, receiver, numbers.two_bits(), true);
     if (!sample.is_there || !(luminance(sample.radiance_over_pdf) > 0)) continue;
     if (dot(sample.wi, at.vertex.ng) * dot(at.vertex.wo, at.vertex.ng) <= 0) continue;
-    if (is_visible(scene, at.vertex.offset_origin(sample.wi), sample.end)) return true;
+    if (is_visible(scene, at.vertex.origin_of_ray(sample.wi), sample.end)) return true;
   }
   return false;
 }

@@ -45,7 +45,7 @@ std::optional<ProbeHit> probe(const Scene& scene, const Ray<float>& ray, float t
                               float t_far = std::numeric_limits<float>::infinity());
 /// A ray that leaves the surface along `direction`.
 inline Ray<float> ray_from(const ProbeHit& from, const Vec3f& direction) {
-  return {from.vertex.offset_origin(direction), direction};
+  return {from.vertex.origin_of_ray(direction), direction};
 }
 
 /// What the checks ask of a material.
