@@ -60,7 +60,8 @@ int run(const RenderOptions& options) {
   if (options.replay.empty())
     check_overwrites_nothing(files_written(options), files_of(description, options.scene_file));
   const ThreadLimit thread_limit(options.run.threads);
-  LoadedScene loaded = load_scene(description, options.is_watertight ? Edges::watertight : Edges::fast);
+  LoadSettings loading{.edges = options.is_watertight ? Edges::watertight : Edges::fast};
+  LoadedScene loaded = load_scene(description, loading);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
   settings.integrator = integrator_for(options, loaded, description.dialect, loaded.warnings);
@@ -69,7 +70,18 @@ int run(const RenderOptions& options) {
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   check_settings(settings);
   const LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};
-  warn(options, loaded.warnings, options.replay.empty() ? lint(subject, brief) : std::vector<Finding>{});
+  const std::vector<Finding> findings = lint(subject, brief);
+  warn(options, loaded.warnings, options.replay.empty() ? findings : std::vector<Finding>{});
+  for (const Finding& finding : findings)
+    loading.lifted.insert(loading.lifted.end(), finding.to_lift.begin(), finding.to_lift.end());
+  if (!loading.lifted.empty()) {
+    loading.lift = lift_of_lights(loaded.scene);
+    if (!options.is_quiet)
+      say("lights in one plane with another surface are taken to lie {:.2g} m before it\n", loading.lift);
+    const SamplerKind sampler = loaded.scene.sampler;
+    loaded = load_scene(description, loading);
+    loaded.scene.sampler = sampler;
+  }
   if (!options.replay.empty()) {
     const SampleId sample = sample_id_from_text(options.replay);
     if (!options.outputs.empty() || !options.stats_file.empty())

@@ -44,8 +44,10 @@ void take_over_mode(std::FILE* stream, const std::filesystem::path& file) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) return;
   // The owner first: a change of owner clears bits of the mode.
-  if (fchown(fileno(stream), status.st_uid, status.st_gid) != 0) errno = 0;
-  fchmod(fileno(stream), status.st_mode & 0777);
+  const bool is_owner_kept = fchown(fileno(stream), status.st_uid, status.st_gid) == 0;
+  // Of another group, what its group may do is not for ours.
+  if (fchmod(fileno(stream), status.st_mode & (is_owner_kept ? 0777 : 0707)) != 0 || !is_owner_kept)
+    errno = 0;
 }
 
 }  // namespace

@@ -23,9 +23,11 @@ struct Camera {
   /// Direction = at_film_origin + x * per_px_x + y * per_px_y for film coordinates in pixels from the upper
   /// left; its component along the optical axis is 1.
   Vec3<double> at_film_origin{}, per_px_x{}, per_px_y{};
-  float near_clip = 1e-4f, far_clip = 1e4f;  ///< Along the optical axis (m), from where rays start.
+  float near_clip = 1e-4f, far_clip = 1e4f;  ///< Along the optical axis from where rays start, in the
+                                             ///< camera's own units.
   /// Where rays start: start + x * start_per_px_x + y * start_per_px_y, in the plane square to the optical
-  /// axis at start_depth (m) before the camera. At 0, where approach() does not set it, in the lens.
+  /// axis at start_depth (in those units) before the camera. At 0, where approach() does not set it, in the
+  /// lens.
   Vec3f start{0, 0, 0}, start_per_px_x{0, 0, 0}, start_per_px_y{0, 0, 0};
   float start_depth = 0;
   /// The lens lies around `origin`, square to the optical axis: its radii along the camera's x and y, in the

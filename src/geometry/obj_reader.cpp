@@ -358,7 +358,7 @@ MeshFile read_obj_file(const std::filesystem::path& file) {
   if (source->text.empty())
     throw InputError(Location{source}, "the file is empty", "expected an OBJ mesh: v and f statements");
   if (const std::string_view format = format_of_content(source->text);
-      !format.empty() && format != "an OBJ mesh")
+      !format.empty() && format != "an OBJ mesh" && source->text.front() != '#')
     throw InputError(whole_file(*source), fmt::format("this is {}, not an OBJ mesh", format),
                      format == "a PLY mesh" ? "write type=\"ply\" in the scene" : "");
   auto read = Parser(source).parse();

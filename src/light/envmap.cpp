@@ -40,8 +40,12 @@ LowContrast low_contrast(std::int32_t width, const std::vector<float>& weights,
     return sum;
   };
   const double whole = sum_below(std::numeric_limits<double>::infinity());
-  const double contrast =
-      defensive_contrast / (std::accumulate(weights.begin(), weights.end(), 0.0) * double(width));
+  // Against the mean of what is not black: else the cap of a map that is mostly black would fall for ever.
+  double lit = 0;
+  for (std::int32_t row = 0; row < std::int32_t(weights.size()); ++row)
+    for (std::int32_t column = 0; column < width; ++column)
+      if (texel(column, row) > 0) lit += double(weights[std::size_t(row)]);
+  const double contrast = defensive_contrast / lit;
   // contrast x sum falls with the cap, towards the cap that is contrast x sum itself. Within a factor of two
   // of it is near enough.
   double cap = largest, sum = whole;

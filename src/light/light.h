@@ -7,15 +7,13 @@
 // load_shape.cpp). The compiler names what is missing, and so does tests/statistical/light_test.cpp.
 #pragma once
 
-#include "base/color.h"
+#include "light/emission.h"
 #include "light/light_sample.h"
 #include "light/light_tables.h"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace etendue {
@@ -33,15 +31,11 @@ class Lights : public LightTables {
   }
 
   /// Makes a light that is a surface shine from its back side as from its front.
-  void set_twosided(std::int32_t light) {
-    is_twosided_.set(light, 1);
-    has_twosided_ = true;
-  }
+  void set_twosided(std::int32_t light) { emissions_.set_twosided(light); }
 
   /// The sphere around all shapes and media, which lights at infinity lie outside of.
   void set_scene_bounds(const Sphere& bounds) { scene_bounds_ = bounds; }
 
-  std::int32_t count() const { return kind_.size(); }
   const std::string& name(std::int32_t light) const { return names_[std::size_t(light)]; }
 
   double power(std::int32_t light) const;                       ///< W, luminance of the channels.
@@ -84,24 +78,17 @@ class Lights : public LightTables {
     return pdf;
   }
 
-  /// Lanes outside of `m` may hold any light, and say nothing.
+  /// Lanes outside of `m` may hold any light.
   template <class F>
   Mask<F> is_twosided(const Int<F>& light, const Mask<F>& m) const {
-    if (!has_twosided_) return F(1) < F(0);
-    return less(Int<F>(0), is_twosided_.at(select(m, light, Int<F>(0))));
+    return emissions_.is_twosided<F>(light, m);
   }
 
-  /// W/(m^2 sr), of a light's surface, on its front side; lanes outside of `m` may hold any light.
+  /// W/(m^2 sr), of a light's surface, on the sides that shine.
   template <class F>
   Color<F> radiance(const Int<F>& light, const Mask<F>& m) const {
-    return strength<F>(light, m);
+    return emissions_.strength<F>(light, m);
   }
-
-  /// Lights at infinity that rays meet: distant disks and environment maps, k = 0 .. infinite_count() - 1.
-  std::int32_t infinite_count() const { return std::int32_t(infinite_.size()); }
-  std::int32_t infinite_light(std::int32_t k) const { return infinite_[std::size_t(k)]; }  ///< Its id.
-  /// Points, spots and directions, which no ray can meet.
-  std::int32_t dirac_count() const { return count() - surface_count_ - infinite_count(); }
 
   /// What a ray that leaves the scene in `direction` (unit, world) meets of the infinite light k, W/(m^2 sr).
   template <class F>
@@ -109,8 +96,9 @@ class Lights : public LightTables {
     const std::int32_t light = infinite_light(k);
     Color<F> radiance = black<F>();
     with_infinite_table(light, [&](const auto& table, std::int32_t row) {
-      radiance = table.template radiance<F>(row, direction, m) *
-                 Color<F>{F(red_[light]), F(green_[light]), F(blue_[light])};
+      const Colorf factor = emissions_.strength(light);
+      radiance =
+          table.template radiance<F>(row, direction, m) * Color<F>{F(factor.r), F(factor.g), F(factor.b)};
     });
     return radiance;
   }
@@ -129,18 +117,18 @@ class Lights : public LightTables {
   std::int32_t note(const Colorf& strength, std::string name, std::int32_t kind, LightPlace place,
                     std::int32_t row);
 
-  /// What `add` was given; lanes outside of `m` may hold any light.
-  template <class F>
-  Color<F> strength(const Int<F>& light, const Mask<F>& m) const {
-    const Int<F> safe = select(m, light, Int<F>(0));
-    return {red_.at(safe), green_.at(safe), blue_.at(safe)};
-  }
-
   template <class F>
   LightRequest<F> request(const Int<F>& light, const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
                           const Vec2<UInt<F>>& u, const Mask<F>& lanes) const {
-    return {scene_bounds_, receiver, u, light, row, strength<F>(light, lanes), is_twosided<F>(light, lanes),
-            pmf,           lanes};
+    return {scene_bounds_,
+            receiver,
+            u,
+            light,
+            row,
+            emissions_.strength<F>(light, lanes),
+            emissions_.is_twosided<F>(light, lanes),
+            pmf,
+            lanes};
   }
 
   /// Apart, so that the code of all kinds does not weigh on scenes with lights on surfaces only.
@@ -154,12 +142,8 @@ class Lights : public LightTables {
     });
   }
 
-  LookupTable<float> red_, green_, blue_;  ///< Strength.
-  LookupTable<std::int32_t> is_twosided_;
-  bool has_twosided_ = false;
+  Emissions emissions_;
   std::vector<std::string> names_;
-  std::vector<std::int32_t> infinite_;  ///< Ids of the lights that rays meet at infinity.
-  std::int32_t surface_count_ = 0;
   Sphere scene_bounds_{{0, 0, 0}, 0};
 };
 

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace etendue {
 
@@ -31,6 +32,13 @@ class LightTables {
   const Table& table() const {
     return std::get<Table>(tables_);
   }
+
+  std::int32_t count() const { return kind_.size(); }
+  /// Lights at infinity that rays meet: distant disks and environment maps, k = 0 .. infinite_count() - 1.
+  std::int32_t infinite_count() const { return std::int32_t(infinite_.size()); }
+  std::int32_t infinite_light(std::int32_t k) const { return infinite_[std::size_t(k)]; }  ///< Its id.
+  /// Points, spots and directions, which no ray can meet.
+  std::int32_t dirac_count() const { return count() - surface_count_ - infinite_count(); }
 
  protected:
   template <class Table>
@@ -71,6 +79,8 @@ class LightTables {
 
   LightKinds tables_;
   LookupTable<std::int32_t> kind_, row_;  ///< Of each light, by its id: which table, and the row in it.
+  std::vector<std::int32_t> infinite_;    ///< Ids of the lights that rays meet at infinity.
+  std::int32_t surface_count_ = 0;
 };
 
 }  // namespace etendue

@@ -16,6 +16,12 @@ std::string turn_shape_round(bool is_sphere) {
              : "turn its faces round (the order of their corners), or set the camera outside";
 }
 
+/// How far along the optical axis it lies what a ray would meet without clip planes, in the camera's own
+/// units.
+float depth_of(const Camera& camera, const View::Seen& seen) {
+  return seen.unclipped->hit.t * (camera.far_clip / seen.t_far) + camera.start_depth;
+}
+
 /// Where the share of what is in view that the clip planes hide matters.
 void check_clip_planes(const LintContext& context, Findings& findings) {
   const View& view = context.view;
@@ -24,8 +30,7 @@ void check_clip_planes(const LintContext& context, Findings& findings) {
   float nearest = std::numeric_limits<float>::infinity(), farthest = 0;
   for (const View::Seen& seen : view.rays) {
     if (!seen.unclipped) continue;
-    // Clip planes are distances along the axis, which each ray knows by its own.
-    const float t = seen.unclipped->hit.t + camera.start_depth;
+    const float t = depth_of(camera, seen);
     nearest = std::min(nearest, t);
     farthest = std::max(farthest, t);
     behind_far += !seen.hit && seen.unclipped->hit.t >= seen.t_far;
@@ -117,7 +122,10 @@ void check_backs(const LintContext& context, Findings& findings) {
   int backs = 0;
   const ProbeHit* example = nullptr;
   for (const View::Seen& seen : context.view.rays)
-    if (seen.hit && !seen.hit->is_front && !context.material_of(*seen.hit).is_two_sided) {
+    if (seen.hit && !seen.hit->is_front && !context.material_of(*seen.hit).is_two_sided &&
+        !context.scene.lights.is_twosided<float>(
+            context.scene.geometry.light[std::size_t(seen.hit->hit.geometry)],
+            context.scene.geometry.light[std::size_t(seen.hit->hit.geometry)] >= 0)) {
       ++backs;
       example = &*seen.hit;
     }
@@ -126,7 +134,7 @@ void check_backs(const LintContext& context, Findings& findings) {
   findings.add("camera-on-backs", shape.where,
                fmt::format("all that the camera sees, the {} for one, it sees from behind, where it is black",
                            shape.name),
-               shape.is_mirrored
+               shape.is_turned_over
                    ? "its transform mirrors it: turn its faces round, or give the mesh vertex normals"
                    : "turn its faces round, or set the camera on the other side");
 }
@@ -134,7 +142,7 @@ void check_backs(const LintContext& context, Findings& findings) {
 void check_units(const LintContext& context, Findings& findings) {
   std::vector<float> distances;
   for (const View::Seen& seen : context.view.rays)
-    if (seen.unclipped) distances.push_back(seen.unclipped->hit.t + context.scene.camera.start_depth);
+    if (seen.unclipped) distances.push_back(depth_of(context.scene.camera, seen));
   if (distances.empty()) return;
   const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());

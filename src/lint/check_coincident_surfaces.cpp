@@ -280,14 +280,15 @@ void report(const LintContext& context, const Pair& pair, Findings& findings) {
         pair.is_opposite ? "remove one, and let the other shine from both sides: <boolean name=\"twosided\" "
                            "value=\"true\"/> in its light; or " +
                                apart
-                         : "remove one of them, or " + apart);
+                         : "remove one of them, or " + apart,
+        pair.is_opposite && one != other ? std::vector{pair.a, pair.b} : std::vector<std::int32_t>{});
   else if (is_first || is_second)
     findings.add(
         "light-in-surface", shape.where,
         fmt::format("the light {} lies in one plane with {}, {}: which of the two a ray meets is chance, and "
                     "integrators disagree",
                     shape.name, second, where),
-        apart + ", or cut a hole for the light");
+        apart + ", or cut a hole for the light", {one});
   else
     findings.add("glass-in-surface", shape.where,
                  fmt::format("the {} lies in one place with {}, {}: which of the two a ray meets is chance",

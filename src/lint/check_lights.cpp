@@ -215,8 +215,12 @@ class LightCheck {
     const LightRays front(context_.scene, light, shape, true);
     const FromLight found = rays_from(context_, front, is_dirac);
     if (found.reached > 0) return check_space(light, shape, front);
+    if (shape >= 0 && context_.scene.lights.is_twosided<float>(light, true)) {
+      const LightRays back(context_.scene, light, shape, false);
+      if (rays_from(context_, back, is_dirac).reached > 0) return check_space(light, shape, back);
+    }
     if (lights_what_is_seen(context_, light, is_dirac)) return;
-    const bool is_visible = shape >= 0 && is_seen(context_, shape);
+    const bool is_in_picture = shape >= 0 && is_seen(context_, shape);
     if (2 * found.diracs > found.rays)
       return add("light-behind-glass", light,
                  fmt::format("is behind mirrors or glass on all sides, where {} cannot find it",
@@ -226,19 +230,18 @@ class LightCheck {
     if (shape >= 0) {
       const FromLight behind = rays_from(context_, LightRays(context_.scene, light, shape, false), is_dirac);
       const ScenePlaces::Shape& place = context_.places.shapes[std::size_t(shape)];
-      if (behind.reached > 0 && place.is_mirrored &&
-          context_.scene.geometry.triangles[std::size_t(shape)] > 0)
+      if (behind.reached > 0 && place.is_turned_over)
         return add(
             "light-turned-over", light,
             "shines away from all that it could light: its transform is a mirror image, which has turned "
             "the front of its mesh over",
             "turn its faces round (the order of their corners), give the mesh vertex normals, or take a "
             "rotation instead");
-      if (behind.reached > 0 && !is_visible)
+      if (behind.reached > 0 && !is_in_picture)
         return add("light-faces-nothing", light, "faces away from all that it could light",
                    "it shines from its front side only: turn it round");
     }
-    if (is_visible) return;  // A lamp to look at.
+    if (is_in_picture) return;  // A lamp to look at.
     add("light-faces-nothing", light,
         found.backs > found.escaped && found.backs > found.blacks
             ? "reaches only surfaces seen from behind, where they are black"

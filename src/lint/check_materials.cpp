@@ -41,7 +41,7 @@ bool loses_light(const LintContext& context) {
     for (int k = 0; k < length; ++k) {
       if (!at || !context.can_be_lit(*at)) return true;
       const MaterialFacts& material = context.material_of(*at);
-      if (material.largest_albedo() < 1) return true;
+      if (material.is_absorbing || material.largest_albedo() < 1) return true;
       ++vertices;
       sources += !material.is_dirac;
       at = probe(context.scene, ray_from(*at, next_direction(*at, material, numbers)));

@@ -13,7 +13,8 @@ namespace etendue {
 class Findings {
  public:
   /// \param id of the table
-  void add(std::string_view id, const Location& where, std::string problem, std::string remedy);
+  void add(std::string_view id, const Location& where, std::string problem, std::string remedy,
+           std::vector<std::int32_t> to_lift = {});
   std::size_t count() const { return all_.size(); }
   std::vector<Finding> take() { return std::move(all_); }
 

@@ -1,5 +1,6 @@
 #include "lint/lint.h"
 
+#include "geometry/bounds.h"
 #include "lint/checks.h"
 
 #include <algorithm>
@@ -48,11 +49,19 @@ const std::vector<Check>& lint_checks() {
   return table;
 }
 
-void Findings::add(std::string_view id, const Location& where, std::string problem, std::string remedy) {
+void Findings::add(std::string_view id, const Location& where, std::string problem, std::string remedy,
+                   std::vector<std::int32_t> to_lift) {
   const std::vector<Check>& table = lint_checks();
   const auto check =
       std::find_if(table.begin(), table.end(), [&](const Check& candidate) { return candidate.id == id; });
-  all_.push_back({check->id, check->severity, where, std::move(problem), std::move(remedy)});
+  all_.push_back(
+      {check->id, check->severity, where, std::move(problem), std::move(remedy), std::move(to_lift)});
+}
+
+float lift_of_lights(const Scene& scene) {
+  const Sphere bounds = bounding_sphere(scene.geometry);
+  const float to_camera = length(scene.camera.start - bounds.center);
+  return 0x1p-19f * (to_camera + 2 * bounds.radius + length(bounds.center));
 }
 
 LintContext::LintContext(const LintSubject& subject_of)

@@ -33,9 +33,10 @@ const std::vector<Check>& lint_checks();
 struct Finding {
   std::string_view id;  ///< Of the check that found it.
   Severity severity;
-  Location where;       ///< The object in the file.
-  std::string problem;  ///< What is wrong, on one line; it names the object.
-  std::string remedy;   ///< What to do.
+  Location where;                       ///< The object in the file.
+  std::string problem;                  ///< What is wrong, on one line; it names the object.
+  std::string remedy;                   ///< What to do.
+  std::vector<std::int32_t> to_lift{};  ///< Ids of lights that render moves off what they lie in.
 };
 
 /// A scene and how it is to be rendered. Nothing of it is copied.
@@ -52,8 +53,12 @@ struct LintEffort {
 };
 inline constexpr LintEffort thorough{1 << 20}, brief{256};
 
-/// All findings, the same in each run, in the order of the checks.
+/// All findings, in the same order in each run.
 std::vector<Finding> lint(const LintSubject& subject, const LintEffort& effort);
+
+/// How far (m) a light that lies in another surface is to be moved along its front, so that rays from the
+/// camera and from all over the scene can tell the two apart: 32 roundings of the longest of them.
+float lift_of_lights(const Scene& scene);
 
 /// Why an image of the scene that is black everywhere is black: one sentence, in which the objects are named.
 std::string reason_of_black_image(const LintSubject& subject);

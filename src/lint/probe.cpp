@@ -28,16 +28,20 @@ struct LargestColor {
 
 struct FactsOf {
   MaterialFacts operator()(const Diffuse& m) const {
-    return {std::visit(LargestColor{}, m.albedo), false, false};
+    return {std::visit(LargestColor{}, m.albedo), false, false, false};
   }
-  MaterialFacts operator()(const Phong& m) const { return {m.kd + m.ks, false, false}; }
-  MaterialFacts operator()(const Mirror&) const { return {{1, 1, 1}, true, false}; }
-  MaterialFacts operator()(const Dielectric&) const { return {{1, 1, 1}, true, true}; }
+  MaterialFacts operator()(const Phong& m) const { return {m.kd + m.ks, false, false, false}; }
+  MaterialFacts operator()(const Mirror&) const { return {{1, 1, 1}, true, false, false}; }
+  MaterialFacts operator()(const Dielectric&) const { return {{1, 1, 1}, true, true, false}; }
   MaterialFacts operator()(const Microfacet& m) const {
-    return {m.kd + Colorf{m.ks, m.ks, m.ks}, false, false};
+    // What the coat reflects, the base does not get.
+    const auto bound = [&](float kd) { return std::max(kd, std::min(kd + m.ks, 1.0f)); };
+    return {{bound(m.kd.r), bound(m.kd.g), bound(m.kd.b)}, false, false, true};
   }
-  MaterialFacts operator()(const RoughConductor& m) const { return {m.specular_reflectance, false, false}; }
-  MaterialFacts operator()(const RoughDielectric&) const { return {{1, 1, 1}, false, true}; }
+  MaterialFacts operator()(const RoughConductor& m) const {
+    return {m.specular_reflectance, false, false, true};
+  }
+  MaterialFacts operator()(const RoughDielectric&) const { return {{1, 1, 1}, false, true, false}; }
 };
 
 }  // namespace
@@ -88,7 +92,7 @@ bool is_in_view(const Camera& camera, const Vec3f& place) {
 }
 
 bool is_lit_by(const Scene& scene, const ProbeHit& at, std::int32_t light, int tries, ProbeNumbers& numbers) {
-  // On both sides: which side counts is the caller's to say.
+  // A receiver on both sides: the side that the ray has met is told below.
   const Receiver<float> receiver{at.vertex.position, at.vertex.ng, at.vertex.ns,
                                  lit_side::front | lit_side::back};
   for (int k = 0; k < tries; ++k) {

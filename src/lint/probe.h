@@ -53,6 +53,7 @@ struct MaterialFacts {
   Colorf albedo;      ///< The largest that it has anywhere; 1 of mirrors and dielectrics.
   bool is_dirac;      ///< A mirror or smooth dielectric: light samples add nothing there.
   bool is_two_sided;  ///< A dielectric; the others are black from behind.
+  bool is_absorbing;  ///< Whatever its colours: metals, and coats over a base.
 
   float largest_albedo() const { return std::max({albedo.r, albedo.g, albedo.b}); }
 };
@@ -74,8 +75,7 @@ View look(const Scene& scene);
 bool is_in_view(const Camera& camera, const Vec3f& place);
 
 /// Where the light of `light` arrives at what a probe ray has met: whether one of `tries` samples of it is
-/// visible from there, from the side that the ray has met. \param needs_light_samples the surface must
-/// scatter what no ray of its own finds
+/// visible from there, from the side that the ray has met.
 bool is_lit_by(const Scene& scene, const ProbeHit& at, std::int32_t light, int tries, ProbeNumbers& numbers);
 
 /// A direction in which a path may go on from a surface: through dielectrics and off the side it has met.

@@ -66,9 +66,9 @@ const Property* property_of(const Object& object, std::string_view name) {
 /// Collects the parts of a scene as the file lists them.
 class Loader {
  public:
-  Loader(const SceneDesc& description, Edges edges)
+  Loader(const SceneDesc& description, const LoadSettings& settings)
       : description_(description),
-        edges_(edges),
+        settings_(settings),
         meshes_(description.root),
         textures_{description.directory} {}
 
@@ -93,7 +93,7 @@ class Loader {
     lights_.set_scene_bounds(whole);
     camera_->approach(whole);
     const Clock::time_point start_of_build = Clock::now();
-    RayCaster rays(geometry_, edges_);
+    RayCaster rays(geometry_, settings_.edges);
     const double seconds_build = seconds_since(start_of_build);
     return {Scene{{0, 0, 0},
                   *camera_,
@@ -201,8 +201,10 @@ class Loader {
       add_light(*light, description_.directory, lights_, unread_);
       note_light(*light);
     }
-    add_shape_geometry(object, description_.directory, ids, radiance, meshes_, geometry_, lights_, unread_,
-                       warnings_);
+    const bool is_lifted = std::find(settings_.lifted.begin(), settings_.lifted.end(), geometry_.count()) !=
+                           settings_.lifted.end();
+    add_shape_geometry(object, description_.directory, ids, radiance, is_lifted ? settings_.lift : 0, meshes_,
+                       geometry_, lights_, unread_, warnings_);
     if (is_twosided) lights_.set_twosided(ids.light);
     note_shapes(object);
     if (light) note_light(*light);
@@ -243,13 +245,14 @@ class Loader {
   void note_shapes(const Object& object) {
     const Property* to_world = property_of(object, "toWorld");
     const auto* transform = to_world ? std::get_if<Transform>(&to_world->value) : nullptr;
-    const bool is_mirrored = transform && determinant(*transform) < 0;
     const Property* file = property_of(object, "filename");
+    const bool is_turned_over =
+        file && transform && determinant(*transform) < 0 && geometry_.has_normals.back() == 0;
     const auto* filename = file ? std::get_if<std::string>(&file->value) : nullptr;
     const std::string name = !object.name.empty() ? fmt::format("{} '{}'", object.type, object.name)
                              : filename           ? fmt::format("{} '{}'", object.type, *filename)
                                         : fmt::format("{} {}", object.type, places_.shapes.size() + 1);
-    places_.shapes.resize(std::size_t(geometry_.count()), {object.location, name, is_mirrored});
+    places_.shapes.resize(std::size_t(geometry_.count()), {object.location, name, is_turned_over});
   }
 
   void note_light(const Object& object) {
@@ -274,7 +277,7 @@ class Loader {
   }
 
   const SceneDesc& description_;
-  Edges edges_;
+  const LoadSettings& settings_;
   MeshFiles meshes_;
   TextureFiles textures_;
   std::optional<Camera> camera_;
@@ -295,10 +298,10 @@ class Loader {
 
 }  // namespace
 
-LoadedScene load_scene(const SceneDesc& description, Edges edges) {
+LoadedScene load_scene(const SceneDesc& description, const LoadSettings& settings) {
   const auto load_about = [&](const Vec3<double>& origin) {
     const SceneDesc moved = moved_to_origin(description, origin);
-    LoadedScene loaded = Loader(moved, edges).load();
+    LoadedScene loaded = Loader(moved, settings).load();
     loaded.scene.origin = origin;
     return loaded;
   };
@@ -309,7 +312,7 @@ LoadedScene load_scene(const SceneDesc& description, Edges edges) {
     return load_about(origin + Vec3<double>{shapes.center.x, shapes.center.y, shapes.center.z});
   };
   try {
-    return load_nearer(Loader(description, edges).load());
+    return load_nearer(Loader(description, settings).load());
   } catch (const InputError&) {
     // Where the scene is very far away, floats may not tell the corners of a shape apart: the camera is near.
     const Vec3<double> camera = camera_place(description);

@@ -21,10 +21,17 @@ struct LoadedScene {
   double seconds_build = 0;  ///< Ray casting's tree.
 };
 
+/// What the file does not say.
+struct LoadSettings {
+  Edges edges = Edges::fast;
+  std::vector<std::int32_t> lifted{};  ///< Ids of shapes that are moved along their fronts, by
+  float lift = 0;                      ///< this much (m).
+};
+
 /// Reads the shapes, makes materials and lights, builds the ray caster. Throws InputError for
 /// anything missing, repeated, unknown or degenerate: the message names the object and its place. A scene far
 /// from the origin is moved there (Scene::origin).
-LoadedScene load_scene(const SceneDesc& description, Edges edges = Edges::fast);
+LoadedScene load_scene(const SceneDesc& description, const LoadSettings& settings = {});
 
 /// Throws InputError where `scene`, read from `description`, has no light: for integrators that need one.
 void check_has_light(const SceneDesc& description, const Scene& scene);

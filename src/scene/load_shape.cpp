@@ -107,6 +107,25 @@ Sphere make_sphere(const Parameters& parameters) {
   return sphere;
 }
 
+/// Moves a mesh along its front: each vertex along the mean normal of the triangles around it.
+void lift_mesh(Mesh& mesh, float lift) {
+  std::vector<Vec3<double>> across(mesh.positions.size(), {0, 0, 0});
+  const auto corner = [&](std::size_t i) {
+    const Vec3f& p = mesh.positions[mesh.indices[i]];
+    return Vec3<double>{p.x, p.y, p.z};
+  };
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const Vec3<double> area = cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i));
+    for (std::size_t k = i; k < i + 3; ++k) across[mesh.indices[k]] = across[mesh.indices[k]] + area;
+  }
+  for (std::size_t v = 0; v < across.size(); ++v)
+    if (length_sq(across[v]) > 0) {
+      const Vec3<double> up = normalize(across[v]) * double(lift);
+      Vec3f& p = mesh.positions[v];
+      p = {float(p.x + up.x), float(p.y + up.y), float(p.z + up.z)};
+    }
+}
+
 }  // namespace
 
 bool is_bsdf(const Object& object) { return object.family == "bsdf" || object.family == "brdf"; }
@@ -118,8 +137,9 @@ const std::vector<Plugin>& shape_plugins() {
 }
 
 void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
-                        const std::optional<Colorf>& radiance, MeshFiles& meshes, Geometry& geometry,
-                        Lights& lights, std::vector<UnreadKey>& unread, std::vector<std::string>& warnings) {
+                        const std::optional<Colorf>& radiance, float lift, MeshFiles& meshes,
+                        Geometry& geometry, Lights& lights, std::vector<UnreadKey>& unread,
+                        std::vector<std::string>& warnings) {
   const std::string numbered = fmt::format("{} {}", object.type, geometry.count() + 1);
   if (object.type == obj_plugin.name || object.type == ply_plugin.name) {
     const bool is_obj = object.type == obj_plugin.name;
@@ -143,11 +163,13 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
           object.location,
           fmt::format("{} triangle{} of the light '{}' {} there more than once; one of each shines", repeated,
                       repeated == 1 ? "" : "s", name, repeated == 1 ? "is" : "are")));
+    if (lift > 0) lift_mesh(mesh, lift);
     const std::int32_t id = geometry.add_mesh(mesh, ids);
     if (radiance) lights.add<MeshLights>(*radiance, name, geometry, id);
   } else if (object.type == sphere_plugin.name) {
     const Parameters parameters(object, sphere_plugin, unread);
-    const Sphere sphere = make_sphere(parameters);
+    Sphere sphere = make_sphere(parameters);
+    sphere.radius += lift;
     const double u_offset = parameters.real("uOffset");
     if (!(u_offset >= 0 && float(u_offset) < 1))
       throw InputError(parameters.location("uOffset"),
@@ -157,7 +179,8 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
   } else if (object.type == rectangle_plugin.name) {
     const Parameters parameters(object, rectangle_plugin, unread);
     const Transform transform = world_from_object(parameters);
-    const Mesh mesh = make_rectangle(transform);
+    Mesh mesh = make_rectangle(transform);
+    if (lift > 0) lift_mesh(mesh, lift);
     const Vec3f &corner = mesh.positions[0], along_x = mesh.positions[1] - corner,
                 along_y = mesh.positions[3] - corner;
     check_extent(object, corner, along_x, along_y);
@@ -170,7 +193,8 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     }
   } else if (object.type == disk_plugin.name) {
     const Parameters parameters(object, disk_plugin, unread);
-    const Disk disk = make_disk(world_from_object(parameters));
+    Disk disk = make_disk(world_from_object(parameters));
+    disk.center = disk.center + disk.ng * lift;
     // As far as floats tell the edge from the centre.
     check_extent(object, disk.center, (disk.center + disk.along_x) - disk.center,
                  (disk.center + disk.along_y) - disk.center);

@@ -13,8 +13,8 @@ namespace etendue {
 struct ScenePlaces {
   struct Shape {
     Location where;
-    std::string name;  ///< With its kind: "mesh 'lamp'", "rectangle 3".
-    bool is_mirrored;  ///< Its transform is a mirror image.
+    std::string name;     ///< With its kind: "mesh 'lamp'", "rectangle 3".
+    bool is_turned_over;  ///< A mesh without vertex normals whose transform is a mirror image.
   };
   struct Light {
     Location where;

@@ -28,6 +28,8 @@ FolderSettings read_settings(const fs::path& file) {
   } catch (const nlohmann::json::parse_error& error) {
     throw InputError({source, std::min(error.byte > 0 ? error.byte - 1 : 0, source->text.size() - 1), 1},
                      "not well-formed JSON", what_is_expected);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError({source}, "it has a number that does not fit", what_is_expected);
   }
   if (!json.is_object()) throw InputError({source}, "not a JSON object", what_is_expected);
   FolderSettings settings{file, std::nullopt};

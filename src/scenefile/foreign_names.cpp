@@ -131,7 +131,7 @@ constexpr ForeignKey keys[]{
     {"light", "point spot", "radiance", "state intensity in W/sr, or power in W", true},
     {"light", "", "samplingWeight", "lights are chosen by --light-sampler; no mean depends on it", false},
     {"camera", "", "fovAxis", "fov is horizontal here: 2 atan(tan(fov / 2) width / height) of a vertical one",
-     true},
+     false},
     {"camera", "", "aspect", "pixels are square; choose width and height", true},
     {"camera", "", "lensRadius", "its name here is 'apertureRadius'", true},
     {"camera", "", "lensradius", "its name here is 'apertureRadius'", true},
