@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace etendue {
@@ -44,7 +43,7 @@ LowContrast low_contrast(std::int32_t width, const std::vector<float>& weights,
   double lit = 0;
   for (std::int32_t row = 0; row < std::int32_t(weights.size()); ++row)
     for (std::int32_t column = 0; column < width; ++column)
-      if (texel(column, row) > 0) lit += double(weights[std::size_t(row)]);
+      if (texel_luminance(column, row) > 0) lit += double(weights[std::size_t(row)]);
   const double contrast = defensive_contrast / lit;
   // contrast x sum falls with the cap, towards the cap that is contrast x sum itself. Within a factor of two
   // of it is near enough.

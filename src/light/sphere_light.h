@@ -69,10 +69,9 @@ class SphereLights {
       ng = select(cone.is_outside, ng, Vec3<F>{across * cosine, across * sine, z});
     }
     LightPoint<F> point;
-    const Vec3<F> from_center = ng * cone.radius;
-    point.position = cone.center + from_center;
+    point.position = cone.center + ng * cone.radius;
     point.ng = ng;
-    point.clearance = clearance<F>(ng, abs_each(cone.center) + abs_each(from_center), F(0));
+    point.clearance = clearance<F>(ng, abs_each(cone.center) + abs_each(ng) * cone.radius, F(0));
     point.pdf_area = pdf_area<F>(row, reference, point.position, ng);
     point.piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));
     return point;

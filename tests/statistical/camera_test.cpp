@@ -85,7 +85,7 @@ TEST(Lens, KeepsItsFocalPlaneSharpAndBlursTheRestByTheCircleOfConfusion) {
 
 TEST(Lens, IsScaledWithTheCamera) {
   // Lengths of the camera are its own: toWorld acts on the lens, its focus and the clip planes.
-  const Camera camera = oblique_camera(lens_xml(0.25, 5), 2);
+  const Camera camera = oblique_camera(lens_xml(0.25, 5) + "<float name=\"nearClip\" value=\"1e-4\"/>", 2);
   for (const Place& place : places()) {
     const CameraRay<float> middle = camera.ray(place.x_px, place.y_px);
     const CameraRay<float> rim = camera.ray(place.x_px, place.y_px, place.on_lens);

@@ -126,7 +126,7 @@ TEST(MicrofacetDistribution, VisibleSlopesOfBeckmannInvertTheirDistribution) {
 TEST(Microfacet, IsTheFormulaOfNori) {
   Microfacet model;
   model.kd = {0.2f, 0.1f, 0.4f};
-  model.ks = 0.6f;
+  model.ks = model.coat_probability = 0.6f;
   model.distribution = {Kind::beckmann, 0.3f};
   model.indices = {1.5f, 1 / 1.5f};
   const auto shadowing = [](double cosine) {

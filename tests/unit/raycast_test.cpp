@@ -215,10 +215,11 @@ TEST(RayCaster, IsWatertightWhereAskedTo) {
     const Vec3f &a = mesh.positions[mesh.indices[first]], &b = mesh.positions[mesh.indices[first + 1]];
     const float along = i % 4 == 0 ? 0.0f : 0.5f;
     const Vec3f target = a + (b - a) * along;
-    // From outside, so that the ray goes on into the ball.
+    // From outside, and not along the ball, where a ray may rightly miss it.
     const Vec3f from =
         target +
-        normalize(target - center + Vec3f{normal(engine), normal(engine), normal(engine)} * 0.4f) * 3;
+        normalize(target - center + normalize(Vec3f{normal(engine), normal(engine), normal(engine)}) * 0.6f) *
+            3;
     origin.push_back(from);
     direction.push_back(normalize(target - from));
   }
