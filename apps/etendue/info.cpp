@@ -87,8 +87,8 @@ void print(const Json& json) {
   for (const auto& [name, version] : json["dependencies"].items())
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
-  for (const char* family : {"integrators", "light_samplers", "samplers", "cameras", "filters", "shapes", "bsdfs", "textures",
-                             "media", "phases", "lights", "tests"}) {
+  for (const char* family : {"integrators", "light_samplers", "samplers", "cameras", "filters", "shapes",
+                             "bsdfs", "textures", "media", "phases", "lights", "tests"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());
