@@ -45,5 +45,6 @@ void check_lights(const LintContext& context, const LintEffort& effort, Findings
 void check_materials(const LintContext& context, Findings& findings);
 void check_coincident_surfaces(const LintContext& context, Findings& findings);
 void check_repeated_shapes(const LintContext& context, Findings& findings);
+void check_rounding(const LintContext& context, Findings& findings);
 
 }  // namespace etendue

@@ -45,6 +45,7 @@ const std::vector<Check>& lint_checks() {
       {"light-in-surface", wrong, "a light lies in another surface"},
       {"glass-in-surface", harmless, "a dielectric lies in another surface"},
       {"repeated-shape", harmless, "a shape is there twice, in the same place"},
+      {"rounded-place", doubtful, "a shape is so far from the rest that rounding changes it"},
   };
   return table;
 }
@@ -93,6 +94,7 @@ std::vector<Finding> lint(const LintSubject& subject, const LintEffort& effort) 
   check_materials(context, findings);
   check_coincident_surfaces(context, findings);
   check_repeated_shapes(context, findings);
+  check_rounding(context, findings);
   return findings.take();
 }
 

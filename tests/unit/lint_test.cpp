@@ -230,6 +230,8 @@ std::vector<Case> cases() {
       {"BlackBallTwice",
        camera() + floor() + lamp() + sphere_xml({0, 0, 1}, 0.2, "") + sphere_xml({0, 0, 1}, 0.2, ""), "mis",
        "repeated-shape"},
+      {"TinyAndFar", camera() + floor() + lamp() + sphere_xml({0, 0, 3e6}, 1, diffuse_xml(0.5)), "mis",
+       "rounded-place"},
       {"FloorTwice", camera() + floor() + floor() + lamp(), "mis", "repeated-shape"},
   };
 }
