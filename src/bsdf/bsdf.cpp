@@ -25,6 +25,7 @@ Material make_material(const Object& description, TextureFiles& files, std::vect
 
 Materials::Materials(std::vector<Material> materials) : all_(std::move(materials)) {
   for (const Material& material : all_) {
+    is_diffuse_.push_back(std::visit([](const auto& model) { return model.is_diffuse(); }, material) ? 1 : 0);
     lit_sides_.push_back(std::visit([](const auto& model) { return model.lit_sides; }, material));
     have_textures_ = have_textures_ || has_texture(material);
   }

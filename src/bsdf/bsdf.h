@@ -41,12 +41,14 @@ concept BsdfModel = requires(const B& bsdf, const Vec3<float>& w, const Vec2<flo
 
 /// A material gives what it is at a point: its textures looked up at the surface coordinates uv in the lanes
 /// given (the other lanes of uv may hold anything). One without textures gives itself. It states from which
-/// sides it scatters light towards a viewer in front (and, where that is both sides, behind).
+/// sides it scatters light towards a viewer in front (and, where that is both sides, behind), and whether it is
+/// diffuse: scatters from all directions alike.
 template <class M>
 concept MaterialModel = requires(const M& material, const Vec2<float>& uv, bool lanes) {
   requires BsdfModel<std::remove_cvref_t<decltype(material.at(uv, lanes))>>;
   { material.has_texture() } -> std::same_as<bool>;
   { M::lit_sides } -> std::convertible_to<std::int32_t>;
+  { material.is_diffuse() } -> std::same_as<bool>;
 };
 
 using Material =
@@ -74,10 +76,14 @@ class Materials {
   Int<F> lit_sides(const Int<F>& id) const {
     return lit_sides_.at(id);
   }
+  template <class F>
+  Mask<F> is_diffuse(const Int<F>& id) const {
+    return equal(is_diffuse_.at(id), Int<F>(1));
+  }
 
  private:
   std::vector<Material> all_;
-  LookupTable<std::int32_t> lit_sides_;
+  LookupTable<std::int32_t> lit_sides_, is_diffuse_;
   bool have_textures_ = false;
 };
 

@@ -18,6 +18,7 @@ struct Dielectric {
   RefractiveIndices indices;
 
   static constexpr std::int32_t lit_sides = lit_side::none;
+  bool is_diffuse() const { return false; }
   bool has_texture() const { return false; }
   template <class F>
   Dielectric at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

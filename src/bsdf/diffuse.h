@@ -33,6 +33,7 @@ struct Diffuse {
   ColorTexture albedo = Colorf{0.5f, 0.5f, 0.5f};
 
   static constexpr std::int32_t lit_sides = lit_side::front;
+  bool is_diffuse() const { return true; }
   bool has_texture() const { return !is_uniform(albedo); }
   template <class F>
   DiffuseBsdf<F> at(const Vec2<F>& uv, const Mask<F>& lanes) const {

@@ -27,6 +27,7 @@ struct Microfacet {
   float reflectance_along_normal = 0;  ///< Of the coat; the base under it needs it.
 
   static constexpr std::int32_t lit_sides = lit_side::front;
+  bool is_diffuse() const { return false; }
   bool has_texture() const { return false; }
   template <class F>
   const Microfacet& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

@@ -12,6 +12,7 @@ namespace etendue {
 
 struct Mirror {
   static constexpr std::int32_t lit_sides = lit_side::none;
+  bool is_diffuse() const { return false; }
   bool has_texture() const { return false; }
   template <class F>
   Mirror at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

@@ -21,6 +21,7 @@ struct Phong {
   float specular_probability = 0.5f;
 
   static constexpr std::int32_t lit_sides = lit_side::front;
+  bool is_diffuse() const { return ks == Colorf{0, 0, 0}; }
   bool has_texture() const { return false; }
   template <class F>
   const Phong& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

@@ -21,6 +21,7 @@ struct RoughConductor {
   Colorf r0{};  ///< Schlick's: reflectance along the normal.
 
   static constexpr std::int32_t lit_sides = lit_side::front;
+  bool is_diffuse() const { return false; }
   bool has_texture() const { return false; }
   template <class F>
   const RoughConductor& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

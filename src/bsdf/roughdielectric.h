@@ -20,6 +20,7 @@ struct RoughDielectric {
   RefractiveIndices indices;  ///< Not equal.
 
   static constexpr std::int32_t lit_sides = lit_side::front | lit_side::back;
+  bool is_diffuse() const { return false; }
   bool has_texture() const { return false; }
   template <class F>
   const RoughDielectric& at(const Vec2<F>& /*uv*/, const Mask<F>& /*lanes*/) const {

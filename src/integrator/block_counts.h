@@ -24,6 +24,7 @@ struct BlockCounts {
 
 /// For benchmarks: a stage ends where the next begins.
 enum class Stage {
+  pilots,
   camera_rays,
   closest_hits,
   medium,
@@ -35,7 +36,7 @@ enum class Stage {
   following,
   sums
 };
-inline constexpr std::array stage_names{"camera_rays",   "closest_hits", "medium",      "emission",
+inline constexpr std::array stage_names{"pilots", "camera_rays",   "closest_hits", "medium",      "emission",
                                         "light_samples", "aiming",       "shadow_rays", "bsdf_samples",
                                         "following",     "sums"};
 

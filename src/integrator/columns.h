@@ -73,12 +73,14 @@ Hit<F> load_hit(const HitColumns& hits, int i) {
 
 struct ReceiverColumns {
   Vec3Column position, ng, ns;
-  Column<std::int32_t> lit_sides;
+  Column<std::int32_t> lit_sides, cut;
+  const LightCuts* cuts = nullptr;
 };
 template <class F>
 Receiver<F> load_receiver(const ReceiverColumns& receivers, int i) {
   return {load_lanes<F>(receivers.position, i), load_lanes<F>(receivers.ng, i),
-          load_lanes<F>(receivers.ns, i), load_lanes<Int<F>>(&receivers.lit_sides[i])};
+          load_lanes<F>(receivers.ns, i), load_lanes<Int<F>>(&receivers.lit_sides[i]), receivers.cuts,
+          load_lanes<Int<F>>(&receivers.cut[i])};
 }
 template <class F>
 void store_receiver(ReceiverColumns& receivers, int i, const Receiver<F>& receiver) {
@@ -86,6 +88,8 @@ void store_receiver(ReceiverColumns& receivers, int i, const Receiver<F>& receiv
   store_lanes(receivers.ng, i, receiver.ng);
   store_lanes(receivers.ns, i, receiver.ns);
   store_lanes(&receivers.lit_sides[i], receiver.lit_sides);
+  store_lanes(&receivers.cut[i], receiver.cut);
+  receivers.cuts = receiver.cuts;
 }
 
 }  // namespace etendue

@@ -16,23 +16,31 @@ struct DirectLightSample {
   Mask<F> needs_shadow_ray;  ///< Elsewhere it adds nothing, hidden or not.
 };
 
+template <class F>
+DirectLightSample<F> select(const Mask<F>& m, const DirectLightSample<F>& a, const DirectLightSample<F>& b) {
+  return {select(m, a.light, b.light), select(m, a.origin, b.origin), select(m, a.along, b.along),
+          select(m, a.unshadowed, b.unshadowed),
+          mask_or(mask_and(m, a.needs_shadow_ray), mask_and(mask_not(m), b.needs_shadow_ray))};
+}
+
 /// The light that reaches the vertices straight from a light, by one sample of the lights: what course
 /// handouts call `sampleLights`, with the BSDF, the cosine and the weight that they leave to `Li`.
-/// \param bsdf_samples that leave the vertex beside \param u_light chooses the light and places the point
+/// \param vertex_number which of the path's \param receiver as lights see the vertex \param u_light chooses the light and places the point
 /// \param pass of the light sampler's passes
 template <class F>
 DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler& light_sampler,
-                                         const PathRules& rules, int bsdf_samples, const Vertex<F>& vertex,
-                                         const Vec2<UInt<F>>& u_light, std::int32_t pass) {
+                                         const PathRules& rules, int vertex_number, const Vertex<F>& vertex,
+                                         const Receiver<F>& receiver, const Vec2<UInt<F>>& u_light,
+                                         std::int32_t pass) {
   // Choose a light.
-  const Receiver<F> receiver = vertex.receiver(scene);
   const LightChoice<F> choice = light_sampler.choose<F>(receiver, u_light.x, pass);
 
   // Sample it: a point (`samplePosition`) or a direction, its radiance over its density
   // (`LuminaireQueryRecord`, `pdf`), the geometry term but for the receiver's cosine.
   DirectLightSample<F> sample;
   sample.light =
-      scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u_light.y}, vertex.is_there);
+      scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u_light.y},
+                             mask_and(vertex.is_there, choice.pmf > F(0)), choice.facet);
 
   // Scatter it: BSDF times cosine, on the sides of the surface that agree with its shading normal.
   const Frame<F> frame(vertex.ns);
@@ -41,13 +49,16 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   const Mask<F> is_lit =
       mask_and(sample.light.is_there, vertex.is_consistent(wo_local.z, wi_local.z, sample.light.wi));
   const F cosine = vertex.foreshortening(wi_local.z);
-  const float light_samples = float(rules.light_samples()->count);
+  const float light_samples = float(rules.light_draws(vertex_number)),
+              bsdf_samples = float(rules.bsdf_samples(vertex_number));
+  const Mask<F> is_alone = vertex.leaves_direct_light_to_lights(scene);
   Color<F> scattered = black<F>();
   for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
     // Weigh it: against the chance that a BSDF sample finds the same light.
-    const F weight = light_sample_weight<F>(
+    F weight = light_sample_weight<F>(
         rules, select(lanes, sample.light.pdf_solid_angle, F(1)) * F(light_samples),
-        [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(float(bsdf_samples)); });
+        [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(bsdf_samples); });
+    if (rules.is_shared_only_where_glossy()) weight = select(is_alone, F(1), weight);
     const Color<F> f = bsdf.eval(wo_local, wi_local);
     scattered = select(lanes, f * sample.light.radiance_over_pdf * (cosine * weight), scattered);
   });

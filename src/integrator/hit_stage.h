@@ -54,7 +54,7 @@ F weight_at_hit(const PathRules& rules, const PathColumns& path, int i, int vert
   F pdf = load_lanes<F>(&path.pdf[i]);
   if (vertex > 0) pdf = pdf * F(float(rules.bsdf_samples(vertex - 1)));
   return met_light_weight<F>(rules, pdf, m, [&] {
-    return pdf_light(load_receiver<F>(path.receiver, i)) * F(float(rules.light_samples()->count));
+    return pdf_light(load_receiver<F>(path.receiver, i)) * F(float(rules.light_draws(vertex - 1)));
   });
 }
 
@@ -77,8 +77,11 @@ template <class F>
     const Mask<F> is_front = mask_and(is_light, mask_or(is_turned, cos_theta_ray < F(0)));
     if (!any(is_front)) continue;
     const F weight = weight_at_hit<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
-      const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), hit.primitive);
-      const LightHit<F> met{ray.origin + ray.direction * hit.t, ng, ray.direction, hit.primitive};
+      const Int<F> facet = light_sampler.chooses_facets()
+                               ? scene.lights.facet_at<F>(light, hit.primitive, is_front)
+                               : Int<F>(whole_light);
+      const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), facet);
+      const LightHit<F> met{ray.origin + ray.direction * hit.t, ng, ray.direction, facet};
       return scene.lights.pdf_solid_angle<F>(light, pmf, receiver, met, is_front);
     });
     add_contribution<F>(

@@ -3,6 +3,7 @@
 #include "integrator/unlit.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -39,6 +40,7 @@ struct Row {
   PathRules (*rules)(Heuristic heuristic);
 };
 
+int env(const char* n, int d) { const char* v = getenv(n); return v ? atoi(v) : d; }
 PathRules light_rules(Heuristic) { return PathRules::direct(ByLights{}); }
 PathRules direct_rules(Heuristic) { return PathRules::direct(ByBsdf{}); }
 PathRules average_rules(Heuristic) { return PathRules::direct(ByBoth{Heuristic::average}); }
@@ -48,6 +50,14 @@ PathRules whitted_rules(Heuristic) { return PathRules::whitted({}); }
 PathRules path_ems_rules(Heuristic) { return PathRules::paths(ByLights{}); }
 PathRules path_mats_rules(Heuristic) { return PathRules::paths(ByBsdf{}); }
 PathRules path_mis_rules(Heuristic heuristic) { return PathRules::paths(ByBoth{heuristic}); }
+/// What has been measured to be best, docs/light_sampling.md.
+ByBoth best_rules(Heuristic heuristic) {
+  return {.heuristic = heuristic,
+          .lights = {.count = env("N", 1), .sampler = "tree", .candidates = env("M", 8), .later_candidates = env("ML", 1)},
+          .only_where_glossy = true};
+}
+PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic)); }
+PathRules direct_light_rules(Heuristic heuristic) { return PathRules::direct(best_rules(heuristic)); }
 
 constexpr Row table[]{
     {"light", "light",
@@ -67,7 +77,12 @@ constexpr Row table[]{
      Keys::none, every_light_rules},
     {"whitted", "whitted", "Light samples, seen through mirrors and smooth dielectrics too.", Keys::none,
      whitted_rules},
-    {"path", "path_mis", "", Keys::heuristic, path_mis_rules},
+    {"path", "path",
+     "Paths with any number of bounces, with the best that has been measured of light samples.", Keys::heuristic,
+     path_rules},
+    {"direct_light", "direct_light",
+     "Direct light, with the best that has been measured of light samples.", Keys::heuristic,
+     direct_light_rules},
     {"path_ems", "path_ems",
      "Paths with any number of bounces; at each, direct light by light samples. The variance has no bound "
      "where lit or shining surfaces meet a light.",
@@ -126,13 +141,16 @@ std::string_view name_of(Heuristic heuristic) {
 }
 
 std::string text_of(const LightSamples& lights) {
-  return fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
+  std::string text = fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
+  if (lights.candidates > 1 || lights.later_candidates > 1)
+    text += fmt::format(" candidates={},{}", lights.candidates, lights.later_candidates);
+  return text;
 }
 std::string text_of(const ByLights& by) { return text_of(by.lights); }
 std::string text_of(const ByBsdf& by) { return fmt::format(" bsdf_samples={}", by.bsdf_samples); }
 std::string text_of(const ByBoth& by) {
-  return fmt::format(" heuristic={}{} bsdf_samples={}", name_of(by.heuristic), text_of(by.lights),
-                     by.bsdf_samples);
+  return fmt::format(" heuristic={}{} bsdf_samples={}{}", name_of(by.heuristic), text_of(by.lights),
+                     by.bsdf_samples, by.only_where_glossy ? " only_where_glossy" : "");
 }
 std::string text_of(const PathRules& rules) {
   return std::visit([](const auto& by) { return text_of(by); }, rules.direct_light());

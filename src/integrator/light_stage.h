@@ -5,6 +5,7 @@
 #include "integrator/camera_stage.h"
 #include "integrator/contribution.h"
 #include "integrator/direct_light.h"
+#include "integrator/resampling.h"
 
 #include <algorithm>
 
@@ -16,13 +17,38 @@ struct LightSampleNumber {
   std::int32_t pass = 0;
 };
 
-/// The random numbers of one light sample of the paths i, i + 1 ... Several samples follow one another in one
-/// sequence; each pass has its own, as every second or third point of one is badly distributed.
+/// The random numbers of one candidate of a light sample of the paths i, i + 1 ... All candidates of all light
+/// samples follow one another in one sequence over the samples of the pixel; each pass has its own, as every
+/// second or third point of one is badly distributed.
 template <class F>
 Vec2<UInt<F>> light_sample_bits(const Scene& scene, const PathRules& rules, const PathColumns& path, int i,
-                                const LightSampleNumber& which) {
-  return sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::light, which.vertex),
-                        {which.number, rules.light_samples()->count, which.pass});
+                                const LightSampleNumber& which, int candidate) {
+  return sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::light, std::uint32_t(which.vertex)),
+                        {which.number * rules.candidates(which.vertex) + candidate,
+                         rules.light_draws(which.vertex), which.pass});
+}
+
+/// One light sample of the paths i, i + 1 ...: the one candidate, or one of several.
+template <class F>
+DirectLightSample<F> light_sample_of(const Scene& scene, const LightSampler& light_sampler,
+                                     const PathRules& rules, const SampleBlock& block, int i,
+                                     const Vertex<F>& vertex, const LightSampleNumber& which) {
+  Receiver<F> receiver = vertex.receiver(scene);
+  if (which.vertex == 0 && block.has_cuts) {
+    receiver.cuts = &block.cuts;
+    receiver.cut = load_lanes<Int<F>>(&block.cut[i]);
+  }
+  const auto candidate = [&](int k) {
+    return sample_direct_light<F>(scene, light_sampler, rules, which.vertex, vertex, receiver,
+                                  light_sample_bits<F>(scene, rules, block.path, i, which, k), which.pass);
+  };
+  const int candidates = rules.candidates(which.vertex);
+  if (candidates == 1) return candidate(0);
+  const std::uint32_t pair = dimension::at_vertex(dimension::selection, std::uint32_t(which.vertex));
+  ResampledLight<F> light(to_unit_float(
+      sample_bits<F>(scene, block.path, i, pair, {which.number, rules.light_samples()->count, which.pass}).x));
+  for (int k = 0; k < candidates; ++k) light.offer(candidate(k));
+  return light.take();
 }
 
 /// For each path: a light sample, its shadow segment, and what it adds to the radiance where it is visible.
@@ -38,8 +64,7 @@ template <class F>
       continue;
     }
     const DirectLightSample<F> sample =
-        sample_direct_light<F>(scene, light_sampler, rules, rules.bsdf_samples(which.vertex), vertex,
-                               light_sample_bits<F>(scene, rules, path, i, which), which.pass);
+        light_sample_of<F>(scene, light_sampler, rules, block, i, vertex, which);
     store_lanes(block.unshadowed, i, sample.unshadowed * load_lanes<F>(path.throughput, i));
     store_mask<F>(&block.shadow_is_needed[i], sample.needs_shadow_ray);
     store_lanes(block.shadow_origin, i, sample.origin);

@@ -4,6 +4,7 @@
 #include "integrator/bsdf_stage.h"
 #include "integrator/hit_stage.h"
 #include "integrator/light_stage.h"
+#include "integrator/pilot_stage.h"
 
 #include <memory>
 
@@ -48,6 +49,7 @@ void go_on(const PathSetting& with, SampleBlock& block, int branch) {
 /// Each sample is a path from the camera, or, where several BSDF samples leave its first vertex, as many.
 template <class F>
 void path(const PathSetting& with, SampleBlock& block) {
+  make_cuts<F>(with.scene, with.light_sampler, block);
   camera_rays<F>(with.scene, block);
   visit<F>(with, block, 0);
   const int branches = with.rules.bsdf_samples(0);

@@ -17,6 +17,8 @@ enum class Heuristic { average, balance, power };
 struct LightSamples {
   int count = 1;                         ///< At each vertex.
   std::string_view sampler = "uniform";  ///< Which light: a name of light_sampler_plugins().
+  /// Of which each light sample is one, chosen by what they would add: at the first vertex, and behind it.
+  int candidates = 1, later_candidates = 1;
 
   friend bool operator==(const LightSamples&, const LightSamples&) = default;
 };
@@ -38,6 +40,8 @@ struct ByBoth {
   Heuristic heuristic = Heuristic::balance;
   LightSamples lights{};
   int bsdf_samples = 1;  ///< As of ByBsdf.
+  /// Where surfaces are diffuse, BSDF samples do not share in direct light, which light samples find alone.
+  bool only_where_glossy = false;
 
   friend bool operator==(const ByBoth&, const ByBoth&) = default;
 };
@@ -84,9 +88,23 @@ class PathRules {
     return length_ == PathLength::one_vertex ? 0 : 1;
   }
 
+  /// What is drawn of the lights' densities at a vertex: of each light sample, each candidate.
+  int light_draws(int vertex) const {
+    const LightSamples& lights = *light_samples();
+    return lights.count * candidates(vertex);
+  }
+  int candidates(int vertex) const {
+    return vertex == 0 ? light_samples()->candidates : light_samples()->later_candidates;
+  }
+  /// Whether BSDF samples of diffuse surfaces leave direct light to light samples.
+  bool is_shared_only_where_glossy() const {
+    const auto* by = std::get_if<ByBoth>(&direct_light_);
+    return by && by->only_where_glossy;
+  }
+
   /// The most that a sample takes of light samples, or of BSDF samples, at one vertex.
   int most_samples() const {
-    return std::max({1, bsdf_samples(0), light_samples() ? light_samples()->count : 0});
+    return std::max({1, bsdf_samples(0), light_samples() ? std::max(light_draws(0), light_draws(1)) : 0});
   }
 
   /// The heuristic where light is found by both techniques; else null.

@@ -4,6 +4,7 @@
 #include "integrator/block_counts.h"
 #include "integrator/columns.h"
 #include "integrator/layer_rule.h"
+#include "lightsampler/light_cuts.h"
 
 #include <cstdint>
 #include <functional>
@@ -57,6 +58,10 @@ struct SampleBlock {
 
   PathColumns path;
   bool is_in_sample_order = true;  ///< Row i of `path` is sample i: no path has been left out yet.
+
+  LightCuts cuts;             ///< Of the tiles that the samples belong to; mostly none.
+  Column<std::int32_t> cut;   ///< Which of them.
+  bool has_cuts = false;
 
   // A light sample: its shadow segment (t from 0 to 1), and what it adds where nothing hides it.
   Vec3Column shadow_origin, shadow_direction;

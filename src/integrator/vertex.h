@@ -86,6 +86,11 @@ struct Vertex {
     return {position, ng, ns, select(is_surface, seen_sides, Int<F>(lit_side::medium))};
   }
 
+  /// Where BSDF samples find nothing that light samples do not find better: on diffuse surfaces.
+  Mask<F> leaves_direct_light_to_lights(const Scene& scene) const {
+    return mask_and(is_surface, scene.materials.is_diffuse<F>(material));
+  }
+
   /// Whether a direction lies on the side of the surface itself that it has relative to the shading normal,
   /// both measured from the side of wo; without that, light leaks through smooth meshes.
   Mask<F> is_consistent(const F& cos_theta_o, const F& cos_theta_i, const Vec3<F>& wi) const {

@@ -35,7 +35,7 @@ F light_sample_weight(const PathRules& rules, const F& pdf_light, Function&& pdf
 }
 
 /// Of light that a ray has met. \param pdf_bsdf of the ray's direction, times the number of BSDF samples;
-/// infinite: the camera's, or a Dirac delta's
+/// infinite: the camera's, or a Dirac delta's; 0: light samples alone find what it meets
 /// \param pdf_light() gives the density of light samples of that direction, times their number; only the
 /// lanes of `m` with a finite `pdf_bsdf` need it
 template <class F, class Function>
@@ -45,7 +45,9 @@ F met_light_weight(const PathRules& rules, const F& pdf_bsdf, const Mask<F>& m, 
   if (!heuristic) return rules.light_samples() ? select(pdf_bsdf < infinity, F(0), F(1)) : F(1);
   if (!rules.needs_both_pdfs()) return mis_weight(*heuristic, pdf_bsdf, F(0));
   if (!any(mask_and(m, pdf_bsdf < infinity))) return F(1);
-  return mis_weight(*heuristic, select(m, pdf_bsdf, F(1)), pdf_light());
+  if (rules.is_shared_only_where_glossy() && !any(mask_and(m, pdf_bsdf > F(0)))) return F(0);
+  const F weight = mis_weight(*heuristic, select(mask_and(m, pdf_bsdf > F(0)), pdf_bsdf, F(1)), pdf_light());
+  return select(pdf_bsdf > F(0), weight, F(0));
 }
 
 }  // namespace etendue

@@ -23,6 +23,40 @@ double Lights::power(std::int32_t light) const {
 std::optional<LightBounds> Lights::bounds(std::int32_t light) const {
   std::optional<LightBounds> bounds;
   with_table(kind_[light], [&](const auto& table) { bounds = table.bounds(row_[light]); });
+  return seen_from_its_sides(light, bounds);
+}
+
+std::int32_t Lights::facet_count(std::int32_t light) const {
+  std::int32_t count = 1;
+  with_table(kind_[light], [&](const auto& table) {
+    if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
+      count = table.facet_count(row_[light]);
+  });
+  return count;
+}
+
+double Lights::facet_power(std::int32_t light, std::int32_t facet) const {
+  double share = 1;
+  with_table(kind_[light], [&](const auto& table) {
+    if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
+      share = table.facet_area_share(row_[light], facet);
+  });
+  return power(light) * share;
+}
+
+std::optional<LightBounds> Lights::facet_bounds(std::int32_t light, std::int32_t facet) const {
+  std::optional<LightBounds> bounds;
+  with_table(kind_[light], [&](const auto& table) {
+    if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
+      bounds = table.facet_bounds(row_[light], facet);
+    else
+      bounds = table.bounds(row_[light]);
+  });
+  return seen_from_its_sides(light, bounds);
+}
+
+std::optional<LightBounds> Lights::seen_from_its_sides(std::int32_t light,
+                                                       std::optional<LightBounds> bounds) const {
   // From the back of a normal it shines as from its front: the cone of both is the whole sphere.
   if (bounds && emissions_.is_twosided(light)) bounds->cos_normals = -1;
   return bounds;

@@ -41,26 +41,34 @@ class Lights : public LightTables {
   double power(std::int32_t light) const;                       ///< W, luminance of the channels.
   std::optional<LightBounds> bounds(std::int32_t light) const;  ///< None: it shines everywhere.
 
-  /// The light that a chosen light sends to a receiver. \param pmf with which it was chosen
+  // The facets of a light are parts of its surface that can be chosen one by one: the triangles of a mesh;
+  // any other light is one facet.
+  std::int32_t facet_count(std::int32_t light) const;
+  double facet_power(std::int32_t light, std::int32_t facet) const;  ///< W, luminance.
+  /// None: it shines everywhere.
+  std::optional<LightBounds> facet_bounds(std::int32_t light, std::int32_t facet) const;
+
+  /// The light that a chosen light, or a facet of it, sends to a receiver. \param pmf with which it was chosen
   /// \param u 32-bit fractions
   template <class F>
   LightSample<F> sample(const Int<F>& light, const F& pmf, const Receiver<F>& receiver,
-                        const Vec2<UInt<F>>& u, const Mask<F>& m) const {
+                        const Vec2<UInt<F>>& u, const Mask<F>& m,
+                        const Int<F>& facet = Int<F>(whole_light)) const {
     // Most scenes have lights of one kind only: then no lane needs to be chosen from another table, and a
     // light's id is its row.
     if (table<MeshLights>().count() == count()) {
       const Int<F> safe = select(m, light, Int<F>(0));
-      return table<MeshLights>().sample<F>(request<F>(light, safe, pmf, receiver, u, m));
+      return table<MeshLights>().sample<F>(request<F>(light, safe, facet, pmf, receiver, u, m));
     }
     LightSample<F> result = no_light_sample<F>();
     if (surface_count_ < count()) {
-      sample_every_kind<F>(light, pmf, receiver, u, m, result);
+      sample_every_kind<F>(light, facet, pmf, receiver, u, m, result);
       return result;
     }
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       if constexpr (SurfaceLightTable<std::remove_cvref_t<decltype(table)>>)
-        result =
-            select(lanes, table.template sample<F>(request<F>(light, row, pmf, receiver, u, lanes)), result);
+        result = select(
+            lanes, table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes)), result);
     });
     return result;
   }
@@ -76,6 +84,17 @@ class Lights : public LightTables {
         pdf = select(lanes, table.template pdf_solid_angle<F>(row, pmf, receiver, hit), pdf);
     });
     return pdf;
+  }
+
+  /// The facet that a ray has hit. \param primitive the triangle within a mesh; 0 of other shapes
+  template <class F>
+  Int<F> facet_at(const Int<F>& light, const Int<F>& primitive, const Mask<F>& m) const {
+    Int<F> facet(0);
+    for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
+      if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
+        facet = select(lanes, table.template facet_at<F>(row, select(lanes, primitive, Int<F>(0))), facet);
+    });
+    return facet;
   }
 
   /// Lanes outside of `m` may hold any light.
@@ -117,14 +136,17 @@ class Lights : public LightTables {
   std::int32_t note(const Colorf& strength, std::string name, std::int32_t kind, LightPlace place,
                     std::int32_t row);
 
+  std::optional<LightBounds> seen_from_its_sides(std::int32_t light, std::optional<LightBounds> bounds) const;
+
   template <class F>
-  LightRequest<F> request(const Int<F>& light, const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
-                          const Vec2<UInt<F>>& u, const Mask<F>& lanes) const {
+  LightRequest<F> request(const Int<F>& light, const Int<F>& row, const Int<F>& facet, const F& pmf,
+                          const Receiver<F>& receiver, const Vec2<UInt<F>>& u, const Mask<F>& lanes) const {
     return {scene_bounds_,
             receiver,
             u,
             light,
             row,
+            facet,
             emissions_.strength<F>(light, lanes),
             emissions_.is_twosided<F>(light, lanes),
             pmf,
@@ -133,12 +155,12 @@ class Lights : public LightTables {
 
   /// Apart, so that the code of all kinds does not weigh on scenes with lights on surfaces only.
   template <class F>
-  [[gnu::noinline]] void sample_every_kind(const Int<F>& light, const F& pmf, const Receiver<F>& receiver,
-                                           const Vec2<UInt<F>>& u, const Mask<F>& m,
-                                           LightSample<F>& result) const {
+  [[gnu::noinline]] void sample_every_kind(const Int<F>& light, const Int<F>& facet, const F& pmf,
+                                           const Receiver<F>& receiver, const Vec2<UInt<F>>& u,
+                                           const Mask<F>& m, LightSample<F>& result) const {
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
-      result =
-          select(lanes, table.template sample<F>(request<F>(light, row, pmf, receiver, u, lanes)), result);
+      result = select(
+          lanes, table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes)), result);
     });
   }
 

@@ -6,9 +6,13 @@
 #include "light/light_point.h"
 #include "light/receiver.h"
 
+#include <cstdint>
 #include <limits>
 
 namespace etendue {
+
+/// The facet of a light that is sampled as a whole.
+inline constexpr std::int32_t whole_light = -1;
 
 /// What a light is asked for.
 template <class F>
@@ -17,9 +21,10 @@ struct LightRequest {
   const Receiver<F>& receiver;
   Vec2<UInt<F>> u;      ///< 32-bit fractions, so that choosing among many triangles leaves enough of them.
   Int<F> light, row;    ///< Its id, and its row in the table of its kind.
+  Int<F> facet;         ///< Of the light, or whole_light.
   Color<F> strength;    ///< What `Lights::add` was given.
   Mask<F> is_twosided;  ///< Surfaces that shine from their back side too.
-  F pmf;                ///< With which the light was chosen: densities have it in them.
+  F pmf;                ///< With which light and facet were chosen: densities have it in them.
   Mask<F> lanes;        ///< Those that ask.
 };
 
@@ -28,7 +33,7 @@ template <class F>
 struct LightHit {
   Vec3<F> position, ng;  ///< World, m; unit, on the side that the ray has met.
   Vec3<F> wi;            ///< Unit, from the receiver.
-  Int<F> primitive;      ///< The triangle within a mesh; 0 of other shapes.
+  Int<F> facet;          ///< Which the light's samples choose; whole_light where they choose none.
 };
 
 template <class F>

@@ -61,6 +61,24 @@ class PieceGrid {
 
 }  // namespace
 
+double MeshLights::facet_area_share(std::int32_t row, std::int32_t facet) const {
+  return 0.5 * length(across(row, facet)) * pdf_area_[row];
+}
+
+LightBounds MeshLights::facet_bounds(std::int32_t row, std::int32_t facet) const {
+  const float* triangle = triangles_.data() + 9 * std::size_t(first_triangle_[row] + facet);
+  const auto vec = [&](int k) { return Vec3f{triangle[k], triangle[k + 1], triangle[k + 2]}; };
+  Box box;
+  for (const Vec3f& corner : {vec(0), vec(0) + vec(3), vec(0) + vec(6)}) box.include(corner);
+  return bounds_of(box, {across(row, facet)});
+}
+
+Vec3<double> MeshLights::across(std::int32_t row, std::int32_t facet) const {
+  const float* triangle = triangles_.data() + 9 * std::size_t(first_triangle_[row] + facet);
+  const auto vec = [&](int k) { return Vec3<double>{triangle[k], triangle[k + 1], triangle[k + 2]}; };
+  return cross(vec(3), vec(6));
+}
+
 std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id) {
   const auto first = std::size_t(geometry.first_triangle[std::size_t(geometry_id)]);
   const auto count = std::size_t(geometry.triangles[std::size_t(geometry_id)]);

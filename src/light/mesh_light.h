@@ -30,13 +30,34 @@ class MeshLights {
 
   template <class F>
   LightSample<F> sample(const LightRequest<F>& request) const {
-    return light_sample_at(sample_position<F>(request.row, request.u), request);
+    const Mask<F> is_whole = less(request.facet, Int<F>(0));
+    if (all(is_whole)) return light_sample_at(sample_position<F>(request.row, request.u), request);
+    const LightPoint<F> point = sample_facet<F>(request.row, select(is_whole, Int<F>(0), request.facet),
+                                                to_unit_floats<F>(request.u));
+    if (!any(is_whole)) return light_sample_at(point, request);
+    return select(is_whole, light_sample_at(sample_position<F>(request.row, request.u), request),
+                  light_sample_at(point, request));
   }
 
   template <class F>
   F pdf_solid_angle(const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
                     const LightHit<F>& hit) const {
-    return pdf_solid_angle_at(hit, receiver, pmf * pdf_area_.at(row));
+    const Mask<F> is_whole = less(hit.facet, Int<F>(0));
+    F pdf_area = pdf_area_.at(row);
+    if (!all(is_whole)) {
+      const Int<F> at = (first_triangle_.at(row) + select(is_whole, Int<F>(0), hit.facet)) * Int<F>(9);
+      const Vec3<F> across = cross(gather_vec3<F>(triangles_.data() + 3, at), gather_vec3<F>(triangles_.data() + 6, at));
+      pdf_area = select(is_whole, pdf_area, F(2) / length(across));
+    }
+    return pdf_solid_angle_at(hit, receiver, pmf * pdf_area);
+  }
+
+  std::int32_t facet_count(std::int32_t row) const { return triangle_count_[row]; }
+  double facet_area_share(std::int32_t row, std::int32_t facet) const;
+  LightBounds facet_bounds(std::int32_t row, std::int32_t facet) const;
+  template <class F>
+  Int<F> facet_at(const Int<F>& /*row*/, const Int<F>& primitive) const {
+    return primitive;
   }
 
   double power(std::int32_t row, const Sphere& /*scene_bounds*/) const { return pi / pdf_area_[row]; }
@@ -52,18 +73,7 @@ class MeshLights {
         sample_alias<F>(alias_threshold_.data(), alias_.data(), first, triangle_count_.at(row), u.y);
     const Vec2<F> u_triangle{to_unit_float(u.x), triangle.u_left};
 
-    const float* corner = triangles_.data();
-    const I at = (first + triangle.index) * I(9);
-    const Vec3<F> origin = gather_vec3<F>(corner, at), edge_1 = gather_vec3<F>(corner + 3, at),
-                  edge_2 = gather_vec3<F>(corner + 6, at);
-    const Vec2<F> barycentric = square_to_triangle(u_triangle);
-
-    LightPoint<F> point;
-    const Vec3<F> along_1 = edge_1 * barycentric.x, along_2 = edge_2 * barycentric.y;
-    point.position = origin + along_1 + along_2;
-    point.ng = normalize(cross(edge_1, edge_2));
-    point.clearance = clearance<F>(point.ng, abs_each(origin) + abs_each(along_1) + abs_each(along_2),
-                                   longest_edge_.at(row));
+    LightPoint<F> point = sample_triangle<F>(row, first + triangle.index, u_triangle);
     point.pdf_area = pdf_area_.at(row);
     const I pieces = gather(pieces_.data(), first + triangle.index);
     point.piece = (pieces & I(0xff)) + to_int(u_triangle.y * to_float(pieces >> 8));
@@ -71,6 +81,37 @@ class MeshLights {
   }
 
  private:
+  /// A point uniform on one triangle of the light.
+  template <class F>
+  LightPoint<F> sample_facet(const Int<F>& row, const Int<F>& facet, const Vec2<F>& u) const {
+    return sample_triangle<F>(row, first_triangle_.at(row) + facet, u);
+  }
+
+  /// \param triangle among those of all lights
+  template <class F>
+  LightPoint<F> sample_triangle(const Int<F>& row, const Int<F>& triangle, const Vec2<F>& u) const {
+    const float* corner = triangles_.data();
+    const Int<F> at = triangle * Int<F>(9);
+    const Vec3<F> origin = gather_vec3<F>(corner, at), edge_1 = gather_vec3<F>(corner + 3, at),
+                  edge_2 = gather_vec3<F>(corner + 6, at);
+    const Vec2<F> barycentric = square_to_triangle(u);
+
+    LightPoint<F> point;
+    const Vec3<F> along_1 = edge_1 * barycentric.x, along_2 = edge_2 * barycentric.y;
+    point.position = origin + along_1 + along_2;
+    const Vec3<F> across = cross(edge_1, edge_2);
+    const F twice_area = length(across);
+    point.ng = across * (F(1) / twice_area);
+    point.pdf_area = F(2) / twice_area;
+    point.clearance = clearance<F>(point.ng, abs_each(origin) + abs_each(along_1) + abs_each(along_2),
+                                   longest_edge_.at(row));
+    point.piece = gather(pieces_.data(), triangle) & Int<F>(0xff);
+    return point;
+  }
+
+  /// Twice the facet's area, along its normal.
+  Vec3<double> across(std::int32_t row, std::int32_t facet) const;
+
   // Per light.
   LookupTable<std::int32_t> first_triangle_, triangle_count_;
   LookupTable<float> pdf_area_;      ///< 1 / total area.

@@ -6,6 +6,8 @@
 
 namespace etendue {
 
+class LightCuts;
+
 /// A vertex of a path as lights see it. A path keeps that of its last vertex until its next ray has met a
 /// light, so that both densities of a weight are computed from the same place.
 template <class F>
@@ -13,6 +15,9 @@ struct Receiver {
   Vec3<F> position;  ///< World, m.
   Vec3<F> ng, ns;    ///< Unit; geometric and shading normal, in a medium towards the viewer.
   Int<F> lit_sides;  ///< Of `lit_side`.
+  /// The cut of the light tree to choose from, see lightsampler/light_cuts.h; null: none.
+  const LightCuts* cuts = nullptr;
+  Int<F> cut = Int<F>(0);
 };
 
 }  // namespace etendue

@@ -10,15 +10,16 @@ class AllLights {
  public:
   explicit AllLights(const Lights& lights) : count_(lights.count()) {}
 
+  static constexpr bool chooses_facets = false;
   std::int32_t passes() const { return count_; }
 
   template <class F>
   LightChoice<F> choose(const Receiver<F>& /*receiver*/, const UInt<F>& u, std::int32_t pass) const {
-    return {Int<F>(pass), u, F(1)};
+    return {Int<F>(pass), Int<F>(whole_light), u, F(1)};
   }
 
   template <class F>
-  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& /*light*/, const Int<F>& /*primitive*/) const {
+  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& /*light*/, const Int<F>& /*facet*/) const {
     return F(1);
   }
 

@@ -20,6 +20,10 @@ constexpr Row table[]{
     {"uniform", "One light, all alike.", make<UniformLights>},
     {"power", "One light, in proportion to its power.", make<PowerLights>},
     {"all", "Every light: a light sample is one sample of each, added up.", make<AllLights>},
+    {"tree",
+     "One facet of a light, by what it may bring to the place: power, distance, and how both face each other, by a "
+     "light tree.",
+     make<TreeLights>},
 };
 
 const Row& row_named(std::string_view name) {

@@ -8,6 +8,7 @@
 #include "lightsampler/all_lights.h"
 #include "lightsampler/light_choice.h"
 #include "lightsampler/power_lights.h"
+#include "lightsampler/tree_lights.h"
 #include "lightsampler/uniform_lights.h"
 #include "scenefile/parameters.h"
 
@@ -21,12 +22,13 @@ namespace etendue {
 /// Made from the lights of a scene, of which there must be one; it may not outlive them.
 ///   passes(): how many choices make one light sample; each of them is to be sampled, and they are added up.
 ///   choose(receiver, u, pass): a light for the receiver, in pass 0 .. passes() - 1.
-///   pmf(receiver, light, primitive): the probability with which the passes choose this light, for a hit on
-///     this primitive of it (a triangle within a mesh); of a light that is chosen in every case, 1. Lanes
-///     that nobody asks for may hold any light that there is.
+///   chooses_facets: whether choices are of facets of lights; else of whole lights.
+///   pmf(receiver, light, facet): the probability with which the passes choose this light, or this facet of it;
+///     of a light that is chosen in every case, 1. Lanes that nobody asks for may hold any light that there is.
 template <class Sampler>
 concept LightSamplerModel = std::constructible_from<Sampler, const Lights&> &&
                             requires(const Sampler& sampler, const Receiver<float>& receiver) {
+                              { Sampler::chooses_facets } -> std::convertible_to<bool>;
                               { sampler.passes() } -> std::same_as<std::int32_t>;
                               {
                                 sampler.template choose<float>(receiver, 0u, 0)
@@ -49,13 +51,23 @@ class LightSampler {
                       sampler_);
   }
   template <class F>
-  F pmf(const Receiver<F>& receiver, const Int<F>& light, const Int<F>& primitive) const {
-    return std::visit(
-        [&](const auto& sampler) { return sampler.template pmf<F>(receiver, light, primitive); }, sampler_);
+  F pmf(const Receiver<F>& receiver, const Int<F>& light, const Int<F>& facet) const {
+    return std::visit([&](const auto& sampler) { return sampler.template pmf<F>(receiver, light, facet); },
+                      sampler_);
+  }
+
+  bool chooses_facets() const {
+    return std::visit([](const auto& sampler) { return std::decay_t<decltype(sampler)>::chooses_facets; },
+                      sampler_);
+  }
+  /// Null of the samplers that have none.
+  const LightTree* tree() const {
+    const auto* by_tree = std::get_if<TreeLights>(&sampler_);
+    return by_tree ? &by_tree->tree() : nullptr;
   }
 
  private:
-  std::variant<UniformLights, PowerLights, AllLights> sampler_;
+  std::variant<UniformLights, PowerLights, AllLights, TreeLights> sampler_;
 };
 
 const std::vector<Plugin>& light_sampler_plugins();

@@ -15,6 +15,7 @@ class PowerLights {
   /// all alike.
   explicit PowerLights(const Lights& lights);
 
+  static constexpr bool chooses_facets = false;
   std::int32_t passes() const { return 1; }
 
   /// By inversion, which keeps the order of the random numbers and so their stratification. u_left has
@@ -25,11 +26,11 @@ class PowerLights {
     const Int<F> first(0);
     const InversionSample<F> sample = sample_by_inversion<F>(shares_.data(), first, count(), u);
     const UInt<F> u_left = as_uint(to_int(sample.u_left * F(0x1p24f))) << 8;
-    return {sample.index, u_left, inversion_pmf<F>(shares_.data(), first, sample.index)};
+    return {sample.index, Int<F>(whole_light), u_left, inversion_pmf<F>(shares_.data(), first, sample.index)};
   }
 
   template <class F>
-  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& light, const Int<F>& /*primitive*/) const {
+  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& light, const Int<F>& /*facet*/) const {
     return inversion_pmf<F>(shares_.data(), Int<F>(0), light);
   }
 

@@ -11,16 +11,17 @@ class UniformLights {
   explicit UniformLights(const Lights& lights)
       : count_(std::uint32_t(lights.count())), pmf_(1.0f / float(lights.count())) {}
 
+  static constexpr bool chooses_facets = false;
   std::int32_t passes() const { return 1; }
 
   template <class F>
   LightChoice<F> choose(const Receiver<F>& /*receiver*/, const UInt<F>& u, std::int32_t /*pass*/) const {
     const UInt<F> n(count_);
-    return {as_int(mul_hi(u, n)), u * n, F(pmf_)};
+    return {as_int(mul_hi(u, n)), Int<F>(whole_light), u * n, F(pmf_)};
   }
 
   template <class F>
-  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& /*light*/, const Int<F>& /*primitive*/) const {
+  F pmf(const Receiver<F>& /*receiver*/, const Int<F>& /*light*/, const Int<F>& /*facet*/) const {
     return F(pmf_);
   }
 

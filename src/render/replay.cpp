@@ -45,8 +45,7 @@ SampleTrace::LightSample light_sample_of(const Scene& scene, const LightSampler&
   const PathColumns& path = block.path;
   const Vertex<F> vertex(scene, load_ray<F>(path.ray, 0), load_hit<F>(path.hit, 0));
   const DirectLightSample<F> sample =
-      sample_direct_light<F>(scene, light_sampler, rules, rules.bsdf_samples(which.vertex), vertex,
-                             light_sample_bits<F>(scene, rules, path, 0, which), which.pass);
+      etendue::light_sample_of<F>(scene, light_sampler, rules, block, 0, vertex, which);
   SampleTrace::LightSample trace{sample.light.light,
                                  sample.light.end,
                                  sample.light.radiance_over_pdf,

@@ -32,6 +32,8 @@ std::string_view sampler_name(SamplerKind kind);
 namespace dimension {
 inline constexpr std::uint32_t film = 0, light = 1, bsdf = 2, choice = 3;
 inline constexpr std::uint32_t vertex_stride = 4;
+/// Which candidate of a light sample is kept; out of the way of the pairs above at any vertex.
+inline constexpr std::uint32_t selection = 0x20000000;
 /// Out of the way of any path's vertices.
 inline constexpr std::uint32_t lens = 0x40000000;
 
