@@ -55,7 +55,8 @@ F cos_of_difference(const F& cos_a, const F& cos_b, const F& sin_b) {
 template <class F>
 struct Importance {
   F value;     ///< W/m^2
-  F spread_sq; ///< The square of the sine of the angle between the cluster's centre and edge; 1 inside.
+  F spread_sq;   ///< The square of the sine of the angle between the cluster's centre and edge; 1 inside.
+  Vec3<F> wi;    ///< To its centre, unit.
 };
 
 /// Power / distance^2 times the largest cosines that any place of the cluster can have at both ends (Conty
@@ -86,7 +87,8 @@ Importance<F> importance(const ClusterLanes<F>& cluster, const Receiver<F>& rece
   cos_light = select(cluster.cos_normals <= F(-1), F(1), cos_light);
 
   const F nearness = cluster.power / max(distance_sq, max(cluster.radius_sq * F(0.25f), F(1e-37f)));
-  return {nearness * select(is_inside, F(1), cos_receiver * cos_light), min(spread_sq, F(1))};
+  return {nearness * select(is_inside, F(1), cos_receiver * cos_light), min(spread_sq, F(1)),
+          to_center * inv_distance};
 }
 
 }  // namespace etendue

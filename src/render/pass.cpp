@@ -97,6 +97,7 @@ struct Passes::Threads {
   const Kernel& kernel;
   const LightSampler light_sampler;
   const int count;
+  LightCutStore cuts;
   tbb::task_arena arena;
   tbb::enumerable_thread_specific<Worker> workers{};
   std::optional<double> seconds_per_replicate{};  ///< As the last pass took.
@@ -107,6 +108,7 @@ struct Passes::Threads {
                    std::vector<FilmStack>& films) {
     if (must_stop()) return false;
     Worker& worker = workers.local();
+    worker.block->cut_store = &cuts;
     TileJob job{.scene = &scene,
                 .light_sampler = &light_sampler,
                 .settings = &settings,
@@ -147,6 +149,7 @@ Passes::Passes(const Scene& scene, const RenderSettings& settings, const Progres
   const int threads = settings.threads > 0 ? settings.threads : available_threads();
   threads_.reset(new Threads{scene, settings, progress, stop, kernel_for(settings.isa),
                              light_sampler_for(settings.integrator, scene.lights), threads,
+                             LightCutStore(LightCuts::tiles_across(scene.camera.width_px) * LightCuts::tiles_across(scene.camera.height_px)),
                              // TBB gives no more than there are, and says on stderr that it does not.
                              tbb::task_arena(std::min(threads, available_threads()))});
 }
