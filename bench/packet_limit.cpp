@@ -118,7 +118,7 @@ struct Measurement {
 Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Isa isa, int samples_per_pixel,
                     double most_samples) {
   RenderSettings settings;
-  settings.integrator = integrator;
+  settings.integrator = settled(integrator, scene.lights);
   settings.isa = isa;
   const Kernel& kernel = kernel_for(isa);
   const LightSampler light_sampler = light_sampler_for(integrator, scene.lights);

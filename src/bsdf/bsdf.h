@@ -41,8 +41,8 @@ concept BsdfModel = requires(const B& bsdf, const Vec3<float>& w, const Vec2<flo
 
 /// A material gives what it is at a point: its textures looked up at the surface coordinates uv in the lanes
 /// given (the other lanes of uv may hold anything). One without textures gives itself. It states from which
-/// sides it scatters light towards a viewer in front (and, where that is both sides, behind), and whether it is
-/// diffuse: scatters from all directions alike.
+/// sides it scatters light towards a viewer in front (and, where that is both sides, behind), and whether it
+/// is diffuse: scatters from all directions alike.
 template <class M>
 concept MaterialModel = requires(const M& material, const Vec2<float>& uv, bool lanes) {
   requires BsdfModel<std::remove_cvref_t<decltype(material.at(uv, lanes))>>;

@@ -36,9 +36,9 @@ enum class Stage {
   following,
   sums
 };
-inline constexpr std::array stage_names{"pilots", "camera_rays",   "closest_hits", "medium",      "emission",
-                                        "light_samples", "aiming",       "shadow_rays", "bsdf_samples",
-                                        "following",     "sums"};
+inline constexpr std::array stage_names{"pilots",       "camera_rays",   "closest_hits", "medium",
+                                        "emission",     "light_samples", "aiming",       "shadow_rays",
+                                        "bsdf_samples", "following",     "sums"};
 
 class StageClock {
  public:

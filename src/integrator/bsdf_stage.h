@@ -53,9 +53,9 @@ template <class F>
     Color<F> throughput = load_lanes<F>(path.throughput, i) * sample.weight;
     if (several > 1) throughput = throughput * F(1 / float(several));
     const F eta = load_lanes<F>(&path.eta[i]) * sample.eta;
-    const Mask<F> is_number =
-        mask_and(is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
-                 is_finite_nonnegative(throughput.b), sample.pdf_solid_angle >= F(0), abs(size_sq - F(1)) < F(1e-3f));
+    const Mask<F> is_number = mask_and(
+        is_finite_nonnegative(throughput.r), is_finite_nonnegative(throughput.g),
+        is_finite_nonnegative(throughput.b), sample.pdf_solid_angle >= F(0), abs(size_sq - F(1)) < F(1e-3f));
     const Mask<F> is_lost = mask_and(vertex.is_there, mask_not(is_number));
     // What is not a number must reach the sum, where it is reported.
     if (any(is_lost)) {

@@ -78,8 +78,11 @@ struct ReceiverColumns {
 };
 template <class F>
 Receiver<F> load_receiver(const ReceiverColumns& receivers, int i) {
-  return {load_lanes<F>(receivers.position, i), load_lanes<F>(receivers.ng, i),
-          load_lanes<F>(receivers.ns, i), load_lanes<Int<F>>(&receivers.lit_sides[i]), receivers.cuts,
+  return {load_lanes<F>(receivers.position, i),
+          load_lanes<F>(receivers.ng, i),
+          load_lanes<F>(receivers.ns, i),
+          load_lanes<Int<F>>(&receivers.lit_sides[i]),
+          receivers.cuts,
           load_lanes<Int<F>>(&receivers.cut[i])};
 }
 template <class F>

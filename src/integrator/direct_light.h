@@ -25,8 +25,8 @@ DirectLightSample<F> select(const Mask<F>& m, const DirectLightSample<F>& a, con
 
 /// The light that reaches the vertices straight from a light, by one sample of the lights: what course
 /// handouts call `sampleLights`, with the BSDF, the cosine and the weight that they leave to `Li`.
-/// \param vertex_number which of the path's \param receiver as lights see the vertex \param u_light chooses the light and places the point
-/// \param pass of the light sampler's passes
+/// \param vertex_number which of the path's \param receiver as lights see the vertex \param u_light chooses
+/// the light and places the point \param pass of the light sampler's passes
 template <class F>
 DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler& light_sampler,
                                          const PathRules& rules, int vertex_number, const Vertex<F>& vertex,
@@ -38,9 +38,8 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   // Sample it: a point (`samplePosition`) or a direction, its radiance over its density
   // (`LuminaireQueryRecord`, `pdf`), the geometry term but for the receiver's cosine.
   DirectLightSample<F> sample;
-  sample.light =
-      scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u_light.y},
-                             mask_and(vertex.is_there, choice.pmf > F(0)), choice.facet);
+  sample.light = scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u_light.y},
+                                        mask_and(vertex.is_there, choice.pmf > F(0)), choice.facet);
 
   // Scatter it: BSDF times cosine, on the sides of the surface that agree with its shading normal.
   const Frame<F> frame(vertex.ns);
@@ -55,9 +54,9 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   Color<F> scattered = black<F>();
   for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
     // Weigh it: against the chance that a BSDF sample finds the same light.
-    F weight = light_sample_weight<F>(
-        rules, select(lanes, sample.light.pdf_solid_angle, F(1)) * F(light_samples),
-        [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(bsdf_samples); });
+    F weight =
+        light_sample_weight<F>(rules, select(lanes, sample.light.pdf_solid_angle, F(1)) * F(light_samples),
+                               [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(bsdf_samples); });
     if (rules.is_shared_only_where_glossy()) weight = select(is_alone, F(1), weight);
     const Color<F> f = bsdf.eval(wo_local, wi_local);
     scattered = select(lanes, f * sample.light.radiance_over_pdf * (cosine * weight), scattered);

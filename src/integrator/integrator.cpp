@@ -3,7 +3,6 @@
 #include "integrator/unlit.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -40,7 +39,6 @@ struct Row {
   PathRules (*rules)(Heuristic heuristic);
 };
 
-int env(const char* n, int d) { const char* v = getenv(n); return v ? atoi(v) : d; }
 PathRules light_rules(Heuristic) { return PathRules::direct(ByLights{}); }
 PathRules direct_rules(Heuristic) { return PathRules::direct(ByBsdf{}); }
 PathRules average_rules(Heuristic) { return PathRules::direct(ByBoth{Heuristic::average}); }
@@ -53,7 +51,7 @@ PathRules path_mis_rules(Heuristic heuristic) { return PathRules::paths(ByBoth{h
 /// What has been measured to be best, docs/light_sampling.md.
 ByBoth best_rules(Heuristic heuristic) {
   return {.heuristic = heuristic,
-          .lights = {.count = env("N", 1), .sampler = "tree", .candidates = env("M", 8), .later_candidates = env("ML", 1)},
+          .lights = {.count = 4, .sampler = "tree", .later_count = 1, .candidates = 0},
           .only_where_glossy = true};
 }
 PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic)); }
@@ -78,11 +76,10 @@ constexpr Row table[]{
     {"whitted", "whitted", "Light samples, seen through mirrors and smooth dielectrics too.", Keys::none,
      whitted_rules},
     {"path", "path",
-     "Paths with any number of bounces, with the best that has been measured of light samples.", Keys::heuristic,
-     path_rules},
-    {"direct_light", "direct_light",
-     "Direct light, with the best that has been measured of light samples.", Keys::heuristic,
-     direct_light_rules},
+     "Paths with any number of bounces, with the best that has been measured of light samples.",
+     Keys::heuristic, path_rules},
+    {"direct_light", "direct_light", "Direct light, with the best that has been measured of light samples.",
+     Keys::heuristic, direct_light_rules},
     {"path_ems", "path_ems",
      "Paths with any number of bounces; at each, direct light by light samples. The variance has no bound "
      "where lit or shining surfaces meet a light.",
@@ -142,8 +139,8 @@ std::string_view name_of(Heuristic heuristic) {
 
 std::string text_of(const LightSamples& lights) {
   std::string text = fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
-  if (lights.candidates > 1 || lights.later_candidates > 1)
-    text += fmt::format(" candidates={},{}", lights.candidates, lights.later_candidates);
+  if (lights.later_count > 0) text += fmt::format(" later_light_samples={}", lights.later_count);
+  if (lights.candidates != 1) text += fmt::format(" candidates={}", lights.candidates);
   return text;
 }
 std::string text_of(const ByLights& by) { return text_of(by.lights); }
@@ -248,6 +245,18 @@ IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std:
     return candidate.rules(Heuristic::balance) == rules;
   });
   return {row == std::end(table) ? integrator.name : row->canonical, rules};
+}
+
+IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights) {
+  const PathRules* rules = integrator.path_rules();
+  if (!rules || !rules->light_samples() || rules->light_samples()->candidates > 0) return integrator;
+  std::int64_t facets = 0;
+  for (std::int32_t light = 0; light < lights.count(); ++light) facets += lights.facet_count(light);
+  // Where the cut of a tile holds each facet by itself, points stay better distributed without a choice among
+  // candidates than it could make them.
+  constexpr int of_many = 4;
+  const bool are_all_in_cut = facets <= LightCut::most_clusters;
+  return {integrator.name, rules->with_candidates(are_all_in_cut ? 1 : of_many)};
 }
 
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights) {

@@ -45,9 +45,13 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
 /// From the command line: a name, its parameters at their defaults. `direct` is BRDF sampling.
 IntegratorSettings integrator_from_name(std::string_view name);
 
-/// The same with another light sampler, by the name that these rules have. Throws InputError for an unknown one, and where the integrator
-/// samples no lights.
+/// The same with another light sampler, by the name that these rules have. Throws InputError for an unknown
+/// one, and where the integrator samples no lights.
 IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler);
+
+/// The same with what it leaves to the scene decided: candidates are 1 where a cut of the light tree
+/// (lightsampler/light_cuts.h) has room for every facet, else 4.
+IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights);
 
 /// Over the lights of a scene, which it may not outlive; where the integrator samples none, any.
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights);

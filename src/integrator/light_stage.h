@@ -17,9 +17,9 @@ struct LightSampleNumber {
   std::int32_t pass = 0;
 };
 
-/// The random numbers of one candidate of a light sample of the paths i, i + 1 ... All candidates of all light
-/// samples follow one another in one sequence over the samples of the pixel; each pass has its own, as every
-/// second or third point of one is badly distributed.
+/// The random numbers of one candidate of a light sample of the paths i, i + 1 ... All candidates of all
+/// light samples follow one another in one sequence over the samples of the pixel; each pass has its own, as
+/// every second or third point of one is badly distributed.
 template <class F>
 Vec2<UInt<F>> light_sample_bits(const Scene& scene, const PathRules& rules, const PathColumns& path, int i,
                                 const LightSampleNumber& which, int candidate) {
@@ -46,7 +46,8 @@ DirectLightSample<F> light_sample_of(const Scene& scene, const LightSampler& lig
   if (candidates == 1) return candidate(0);
   const std::uint32_t pair = dimension::at_vertex(dimension::selection, std::uint32_t(which.vertex));
   ResampledLight<F> light(to_unit_float(
-      sample_bits<F>(scene, block.path, i, pair, {which.number, rules.light_samples()->count, which.pass}).x));
+      sample_bits<F>(scene, block.path, i, pair, {which.number, rules.light_count(which.vertex), which.pass})
+          .x));
   for (int k = 0; k < candidates; ++k) light.offer(candidate(k));
   return light.take();
 }
@@ -108,7 +109,7 @@ void add_light_samples(const Scene& scene, const LightSampler& light_sampler, Sa
                        const PathRules& rules, int vertex, bool is_reordering) {
   const std::int32_t lights_a_pass = light_sampler.passes() > 1 ? 1 : scene.lights.count();
   const bool is_aimed = is_reordering && is_worth_aiming(block, vertex, lights_a_pass);
-  for (int number = 0; number < rules.light_samples()->count; ++number)
+  for (int number = 0; number < rules.light_count(vertex); ++number)
     for (std::int32_t pass = 0; pass < light_sampler.passes(); ++pass) {
       sample_lights<F>(scene, light_sampler, block, rules, {vertex, number, pass});
       if (is_aimed)

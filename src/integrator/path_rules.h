@@ -17,8 +17,10 @@ enum class Heuristic { average, balance, power };
 struct LightSamples {
   int count = 1;                         ///< At each vertex.
   std::string_view sampler = "uniform";  ///< Which light: a name of light_sampler_plugins().
-  /// Of which each light sample is one, chosen by what they would add: at the first vertex, and behind it.
-  int candidates = 1, later_candidates = 1;
+  int later_count = 0;                   ///< At the vertices behind the first; 0: as many as there.
+  /// Each light sample of the first vertex is one of so many candidates, chosen by what they would add. 0: by
+  /// what there is to choose from, see settled().
+  int candidates = 1;
 
   friend bool operator==(const LightSamples&, const LightSamples&) = default;
 };
@@ -76,6 +78,21 @@ class PathRules {
     return changed;
   }
 
+  /// The same with so many candidates; light_samples() must not be null.
+  PathRules with_candidates(int candidates) const {
+    PathRules changed = *this;
+    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.candidates = candidates;
+    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.candidates = candidates;
+    return changed;
+  }
+  /// The same with so many light samples at the first vertex; light_samples() must not be null.
+  PathRules with_light_count(int count) const {
+    PathRules changed = *this;
+    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.count = count;
+    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.count = count;
+    return changed;
+  }
+
   /// Whether light is scattered at the vertex of this number; else only its emission counts.
   bool is_scattering(int vertex) const { return vertex == 0 || length_ != PathLength::one_vertex; }
   bool is_dirac_only() const { return length_ == PathLength::through_diracs; }
@@ -88,14 +105,15 @@ class PathRules {
     return length_ == PathLength::one_vertex ? 0 : 1;
   }
 
-  /// What is drawn of the lights' densities at a vertex: of each light sample, each candidate.
-  int light_draws(int vertex) const {
+  /// Light samples that a vertex takes.
+  int light_count(int vertex) const {
     const LightSamples& lights = *light_samples();
-    return lights.count * candidates(vertex);
+    return vertex == 0 || lights.later_count == 0 ? lights.count : lights.later_count;
   }
-  int candidates(int vertex) const {
-    return vertex == 0 ? light_samples()->candidates : light_samples()->later_candidates;
-  }
+  /// Of which each of them is one.
+  int candidates(int vertex) const { return vertex == 0 ? light_samples()->candidates : 1; }
+  /// What is drawn of the lights' densities: of each light sample, each candidate.
+  int light_draws(int vertex) const { return light_count(vertex) * candidates(vertex); }
   /// Whether BSDF samples of diffuse surfaces leave direct light to light samples.
   bool is_shared_only_where_glossy() const {
     const auto* by = std::get_if<ByBoth>(&direct_light_);

@@ -43,18 +43,20 @@ struct PilotLobes {
   }
 };
 
-/// The receivers that the pilot rays of a tile meet, in a grid over it and through the middle of the lens. They
-/// decide how lights are chosen, never what a sample is worth.
+/// The receivers that the pilot rays of a tile meet, in a grid over it and through the middle of the lens.
+/// They decide how lights are chosen, never what a sample is worth.
 template <class F>
-void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int slot, std::int32_t tile, int tiles_across) {
-  constexpr int side = 4, step_px = LightCut::tile_px / side;
+void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int slot, std::int32_t tile,
+              int tiles_across) {
+  constexpr int side = 4;
   static_assert(side * side == LightCuts::pilots && LightCuts::pilots % lane_count_v<F> == 0);
-  const int x_px = tile % tiles_across * LightCut::tile_px,
-            y_px = tile / tiles_across * LightCut::tile_px;
+  const int x_px = tile % tiles_across * LightCut::tile_px, y_px = tile / tiles_across * LightCut::tile_px;
+  const float width_px = float(std::min(LightCut::tile_px, scene.camera.width_px - x_px)),
+              height_px = float(std::min(LightCut::tile_px, scene.camera.height_px - y_px));
   alignas(64) std::array<float, LightCuts::pilots> x, y;
   for (int k = 0; k < LightCuts::pilots; ++k) {
-    x[std::size_t(k)] = float(x_px + k % side * step_px) + 0.5f * step_px;
-    y[std::size_t(k)] = float(y_px + k / side * step_px) + 0.5f * step_px;
+    x[std::size_t(k)] = float(x_px) + width_px * (float(k % side) + 0.5f) / side;
+    y[std::size_t(k)] = float(y_px) + height_px * (float(k / side) + 0.5f) / side;
   }
   struct Pilots {
     RayColumns ray;
@@ -65,9 +67,8 @@ void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int sl
   for (int p = 0; p < packets; ++p) {
     const int i = p * lane_count_v<F>;
     const F x_lanes = load_lanes<F>(&x[std::size_t(i)]), y_lanes = load_lanes<F>(&y[std::size_t(i)]);
-    const CameraRay<F> ray = scene.camera.has_lens
-                                 ? scene.camera.ray(x_lanes, y_lanes, Vec2<F>{F(0), F(0)})
-                                 : scene.camera.ray(x_lanes, y_lanes);
+    const CameraRay<F> ray = scene.camera.has_lens ? scene.camera.ray(x_lanes, y_lanes, Vec2<F>{F(0), F(0)})
+                                                   : scene.camera.ray(x_lanes, y_lanes);
     store_lanes(pilots.ray.origin, i, ray.origin);
     store_lanes(pilots.ray.direction, i, ray.direction);
     store_lanes(&pilots.ray.t_near[i], ray.t_near);
@@ -76,13 +77,12 @@ void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int sl
   }
   const RayColumns& rays = pilots.ray;
   HitColumns& hits = pilots.hit;
-  scene.rays.closest_hits(
-      {rays.origin.x.data(), rays.origin.y.data(), rays.origin.z.data(), rays.direction.x.data(),
-       rays.direction.y.data(), rays.direction.z.data(), rays.t_near.data(), rays.t_far.data(),
-       rays.is_active.data(), LightCuts::pilots},
-      {hits.t.data(), hits.ng.x.data(), hits.ng.y.data(), hits.ng.z.data(), hits.u.data(), hits.v.data(),
-       hits.geometry.data(), hits.primitive.data()},
-      lane_count_v<F>, Coherence::coherent);
+  scene.rays.closest_hits({rays.origin.x.data(), rays.origin.y.data(), rays.origin.z.data(),
+                           rays.direction.x.data(), rays.direction.y.data(), rays.direction.z.data(),
+                           rays.t_near.data(), rays.t_far.data(), rays.is_active.data(), LightCuts::pilots},
+                          {hits.t.data(), hits.ng.x.data(), hits.ng.y.data(), hits.ng.z.data(), hits.u.data(),
+                           hits.v.data(), hits.geometry.data(), hits.primitive.data()},
+                          lane_count_v<F>, Coherence::coherent);
   std::array<Receiver<F>, packets> receivers;
   std::array<Mask<F>, packets> is_lit;
   std::vector<PilotLobes<F>> lobes;
@@ -94,8 +94,9 @@ void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int sl
     lobes.emplace_back(vertex);
     is_lit[std::size_t(p)] = mask_and(
         vertex.is_surface, mask_not(equal(receivers[std::size_t(p)].lit_sides, Int<F>(lit_side::none))));
-    is_all_diffuse = is_all_diffuse && !any(mask_and(is_lit[std::size_t(p)],
-                                                     mask_not(scene.materials.is_diffuse<F>(vertex.material))));
+    is_all_diffuse =
+        is_all_diffuse &&
+        !any(mask_and(is_lit[std::size_t(p)], mask_not(scene.materials.is_diffuse<F>(vertex.material))));
   }
   if (is_all_diffuse) {
     cuts.make<F>(slot, tree, receivers.data(), is_lit.data(), [](int, const Importance<F>&) { return F(1); });

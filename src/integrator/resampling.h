@@ -8,10 +8,10 @@ namespace etendue {
 /// Resampled importance sampling (Talbot, Cline and Egbert 2005, "Importance resampling for global
 /// illumination", eq. 5): a candidate stays with a probability in proportion to the luminance of what it adds
 /// where nothing hides it, and then stands for all of them, so that the expectation is that of each alone.
-/// Weights of multiple importance sampling are in what candidates add already. One number chooses by inverting
-/// the distribution of the candidates in their order, stretched back at each: so it stays stratified over the
-/// samples of a pixel, as a reservoir with fresh numbers would not (Ciklabakkal et al. 2022, "Single-pass
-/// stratified importance resampling").
+/// Weights of multiple importance sampling are in what candidates add already. One number chooses by
+/// inverting the distribution of the candidates in their order, stretched back at each: so it stays
+/// stratified over the samples of a pixel, as a reservoir with fresh numbers would not (Ciklabakkal et al.
+/// 2022, "Single-pass stratified importance resampling").
 template <class F>
 class ResampledLight {
  public:

@@ -59,9 +59,9 @@ struct SampleBlock {
   PathColumns path;
   bool is_in_sample_order = true;  ///< Row i of `path` is sample i: no path has been left out yet.
 
-  LightCuts cuts;  ///< Of the tiles that the samples belong to; mostly none.
+  LightCuts cuts;                      ///< Of the tiles that the samples belong to; mostly none.
   LightCutStore* cut_store = nullptr;  ///< Of the render, where there is one.
-  Column<std::int32_t> cut;   ///< Which of them.
+  Column<std::int32_t> cut;            ///< Which of them.
   bool has_cuts = false;
 
   // A light sample: its shadow segment (t from 0 to 1), and what it adds where nothing hides it.

@@ -48,8 +48,8 @@ class Lights : public LightTables {
   /// None: it shines everywhere.
   std::optional<LightBounds> facet_bounds(std::int32_t light, std::int32_t facet) const;
 
-  /// The light that a chosen light, or a facet of it, sends to a receiver. \param pmf with which it was chosen
-  /// \param u 32-bit fractions
+  /// The light that a chosen light, or a facet of it, sends to a receiver. \param pmf with which it was
+  /// chosen \param u 32-bit fractions
   template <class F>
   LightSample<F> sample(const Int<F>& light, const F& pmf, const Receiver<F>& receiver,
                         const Vec2<UInt<F>>& u, const Mask<F>& m,
@@ -159,8 +159,8 @@ class Lights : public LightTables {
                                            const Receiver<F>& receiver, const Vec2<UInt<F>>& u,
                                            const Mask<F>& m, LightSample<F>& result) const {
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
-      result = select(
-          lanes, table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes)), result);
+      result = select(lanes, table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes)),
+                      result);
     });
   }
 

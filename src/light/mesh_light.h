@@ -33,7 +33,7 @@ class MeshLights {
     const Mask<F> is_whole = less(request.facet, Int<F>(0));
     if (all(is_whole)) return light_sample_at(sample_position<F>(request.row, request.u), request);
     const LightPoint<F> point = sample_facet<F>(request.row, select(is_whole, Int<F>(0), request.facet),
-                                                to_unit_floats<F>(request.u));
+                                                {to_unit_float(request.u.x), to_unit_float(request.u.y)});
     if (!any(is_whole)) return light_sample_at(point, request);
     return select(is_whole, light_sample_at(sample_position<F>(request.row, request.u), request),
                   light_sample_at(point, request));
@@ -46,7 +46,8 @@ class MeshLights {
     F pdf_area = pdf_area_.at(row);
     if (!all(is_whole)) {
       const Int<F> at = (first_triangle_.at(row) + select(is_whole, Int<F>(0), hit.facet)) * Int<F>(9);
-      const Vec3<F> across = cross(gather_vec3<F>(triangles_.data() + 3, at), gather_vec3<F>(triangles_.data() + 6, at));
+      const Vec3<F> across =
+          cross(gather_vec3<F>(triangles_.data() + 3, at), gather_vec3<F>(triangles_.data() + 6, at));
       pdf_area = select(is_whole, pdf_area, F(2) / length(across));
     }
     return pdf_solid_angle_at(hit, receiver, pmf * pdf_area);

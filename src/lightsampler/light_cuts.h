@@ -16,8 +16,8 @@ namespace etendue {
 
 /// A facet of those at the places [begin, end), in proportion to their power.
 template <class F>
-LightChoice<F> choose_by_power(const LightTree& tree, const Int<F>& begin, const Int<F>& end, const UInt<F>& u,
-                               const F& pmf) {
+LightChoice<F> choose_by_power(const LightTree& tree, const Int<F>& begin, const Int<F>& end,
+                               const UInt<F>& u, const F& pmf) {
   using I = Int<F>;
   const std::int32_t* shares = tree.shares();
   const I low = gather(shares, begin), size = gather(shares, end) - low;
@@ -47,15 +47,15 @@ F pmf_by_power(const LightTree& tree, const Int<F>& begin, const Int<F>& end, co
   return part / max(to_float(gather(shares, end) - gather(shares, begin)), F(1));
 }
 
-/// One cut. It depends on the scene and its tile alone, so no bit of an image depends on how it is divided into
-/// blocks.
+/// One cut. It depends on the scene and its tile alone, so no bit of an image depends on how it is divided
+/// into blocks.
 struct LightCut {
   static constexpr int tile_px = 8;
   static constexpr int most_clusters = 256;
   static constexpr int guide_shift = 24, guides = 1 << (32 - guide_shift);
 
-  /// Clusters from left to right: cumulative shares (light/inversion_table.h), and the places of the tree where
-  /// they begin. Those that are not needed hold no place.
+  /// Clusters from left to right: cumulative shares (light/inversion_table.h), and the places of the tree
+  /// where they begin. Those that are not needed hold no place.
   std::array<std::int32_t, most_clusters + 1> shares, places;
   std::array<std::int32_t, guides> guide;  ///< For the high bits of a number, where to look for its cluster.
 };
@@ -72,7 +72,8 @@ class LightCutStore {
 
   /// Null where it has not been kept.
   const LightCut* find(std::int32_t tile) const {
-    return std::size_t(tile) < cuts_.size() ? cuts_[std::size_t(tile)].load(std::memory_order_acquire) : nullptr;
+    return std::size_t(tile) < cuts_.size() ? cuts_[std::size_t(tile)].load(std::memory_order_acquire)
+                                            : nullptr;
   }
   void keep(std::int32_t tile, const LightCut& cut) {
     if (std::size_t(tile) >= cuts_.size()) return;
@@ -203,7 +204,9 @@ class LightCuts {
     append_cumulative_shares(weights, shares);
     std::copy(shares.begin(), shares.end(), cut.shares.begin());
     for (std::int32_t g = 0, e = 0; g < LightCut::guides; ++g) {
-      while (e + 1 < most_clusters && cut.shares[std::size_t(e + 1)] <= g * (inversion_whole / LightCut::guides)) ++e;
+      while (e + 1 < most_clusters &&
+             cut.shares[std::size_t(e + 1)] <= g * (inversion_whole / LightCut::guides))
+        ++e;
       cut.guide[std::size_t(g)] = e;
     }
   }

@@ -14,9 +14,9 @@ namespace etendue {
 struct alignas(64) LightCluster {
   Vec3f center;
   float radius_sq;
-  Vec3f axis;        ///< Unit; of the cone of normals, from which each shines up to a right angle.
-  float cos_normals; ///< Of the cone's half angle; -1: every direction.
-  float power;       ///< W
+  Vec3f axis;                ///< Unit; of the cone of normals, from which each shines up to a right angle.
+  float cos_normals;         ///< Of the cone's half angle; -1: every direction.
+  float power;               ///< W
   std::int32_t first_child;  ///< The other stands behind it; 0: a leaf.
   std::int32_t parent;
   std::int32_t begin, end;  ///< Its facets, by their places in the tree.
@@ -54,9 +54,9 @@ F cos_of_difference(const F& cos_a, const F& cos_b, const F& sin_b) {
 
 template <class F>
 struct Importance {
-  F value;     ///< W/m^2
-  F spread_sq;   ///< The square of the sine of the angle between the cluster's centre and edge; 1 inside.
-  Vec3<F> wi;    ///< To its centre, unit.
+  F value;      ///< W/m^2
+  F spread_sq;  ///< The square of the sine of the angle between the cluster's centre and edge; 1 inside.
+  Vec3<F> wi;   ///< To its centre, unit.
 };
 
 /// Power / distance^2 times the largest cosines that any place of the cluster can have at both ends (Conty

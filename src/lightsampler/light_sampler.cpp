@@ -21,7 +21,8 @@ constexpr Row table[]{
     {"power", "One light, in proportion to its power.", make<PowerLights>},
     {"all", "Every light: a light sample is one sample of each, added up.", make<AllLights>},
     {"tree",
-     "One facet of a light, by what it may bring to the place: power, distance, and how both face each other, by a "
+     "One facet of a light, by what it may bring to the place: power, distance, and how both face each "
+     "other, by a "
      "light tree.",
      make<TreeLights>},
 };

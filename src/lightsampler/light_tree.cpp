@@ -56,7 +56,9 @@ struct Sums {
 class Builder {
  public:
   explicit Builder(std::vector<Facet>& facets)
-      : facets_(facets), sparse_(2 * facets.size() - 1), most_in_leaf_(facets.size() >= many_facets ? most_in_leaf : 1) {
+      : facets_(facets),
+        sparse_(2 * facets.size() - 1),
+        most_in_leaf_(facets.size() >= many_facets ? most_in_leaf : 1) {
     build(0, 1, 0, 0, facets.size());
   }
 
@@ -165,9 +167,10 @@ class Builder {
     const Vec3f size = centers.high - centers.low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::size_t middle = (begin + end) / 2;
-    std::nth_element(first, facets_.begin() + std::ptrdiff_t(middle), last, [&](const Facet& a, const Facet& b) {
-      return component(a.center, axis) < component(b.center, axis);
-    });
+    std::nth_element(first, facets_.begin() + std::ptrdiff_t(middle), last,
+                     [&](const Facet& a, const Facet& b) {
+                       return component(a.center, axis) < component(b.center, axis);
+                     });
     return middle;
   }
 
@@ -213,7 +216,9 @@ LightTree::LightTree(const Lights& lights) {
   // Of little power is not of none: a facet that is never chosen would be missing.
   constexpr double least_share = 0x1p-28;
   for (Facet& facet : facets)
-    facet.power = total == 0 ? 1.0f : facet.power > 0 ? float(std::max(double(facet.power), least_share * total)) : 0;
+    facet.power = total == 0        ? 1.0f
+                  : facet.power > 0 ? float(std::max(double(facet.power), least_share * total))
+                                    : 0;
 
   clusters_ = Builder(facets).clusters();
   places_.resize(facets.size());

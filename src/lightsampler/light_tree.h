@@ -15,9 +15,9 @@ struct LightFacet {
 };
 
 /// Clusters are split in two so that both have little power, little extent and normals of one direction: the
-/// orientation heuristic of Conty Estevez and Kulla 2018, section 4.4, in 16 bins. Deviation: what the cone is
-/// there, is here 2 less the length of the mean normal, which sums of bins give at once; what the area is, the
-/// square of the box's diagonal, as flat clusters are not small.
+/// orientation heuristic of Conty Estevez and Kulla 2018, section 4.4, in 16 bins. Deviation: what the cone
+/// is there, is here 2 less the length of the mean normal, which sums of bins give at once; what the area is,
+/// the square of the box's diagonal, as flat clusters are not small.
 class LightTree {
  public:
   explicit LightTree(const Lights& lights);

@@ -1,4 +1,5 @@
-// Which light, and which facet of it: by a walk down the light tree, and at what the camera sees by a cut of it.
+// Which light, and which facet of it: by a walk down the light tree, and at what the camera sees by a cut of
+// it.
 #pragma once
 
 #include "light/inversion_table.h"

@@ -61,7 +61,7 @@ SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrat
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     throw_if_stopped(test);
     RenderSettings settings;
-    settings.integrator = integrator;
+    settings.integrator = settled(integrator, scene.lights);
     settings.seed = hash64(hash64(seed) + part);
     settings.isa = test.isa;
     const int samples = int(std::min(samples_a_task, count - std::int64_t(part) * samples_a_task));

@@ -91,7 +91,7 @@ class StopWatch {
 
 struct Passes::Threads {
   const Scene& scene;
-  const RenderSettings& settings;
+  const RenderSettings settings;
   const ProgressCallback& progress;
   const StopRequest* stop;
   const Kernel& kernel;
@@ -147,9 +147,12 @@ struct Passes::Threads {
 Passes::Passes(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress,
                const StopRequest* stop) {
   const int threads = settings.threads > 0 ? settings.threads : available_threads();
-  threads_.reset(new Threads{scene, settings, progress, stop, kernel_for(settings.isa),
+  RenderSettings settled_settings = settings;
+  settled_settings.integrator = settled(settings.integrator, scene.lights);
+  threads_.reset(new Threads{scene, settled_settings, progress, stop, kernel_for(settings.isa),
                              light_sampler_for(settings.integrator, scene.lights), threads,
-                             LightCutStore(LightCuts::tiles_across(scene.camera.width_px) * LightCuts::tiles_across(scene.camera.height_px)),
+                             LightCutStore(LightCuts::tiles_across(scene.camera.width_px) *
+                                           LightCuts::tiles_across(scene.camera.height_px)),
                              // TBB gives no more than there are, and says on stderr that it does not.
                              tbb::task_arena(std::min(threads, available_threads()))});
 }

@@ -85,6 +85,7 @@ SampleTrace::Vertex vertex_of(const Scene& scene, const PathRules& rules, const 
 
 SampleTrace replay(const Scene& scene, const RenderSettings& settings, const SampleId& sample) {
   check(scene, settings, sample);
+  const IntegratorSettings integrator = settled(settings.integrator, scene.lights);
   SampleTrace trace{};
   const std::unique_ptr<SampleBlock> block = block_of(settings, sample);
   camera_rays<F>(scene, *block);
@@ -93,8 +94,8 @@ SampleTrace replay(const Scene& scene, const RenderSettings& settings, const Sam
   trace.y_px = float(sample.y) + 0.5f + scene.filter.sample_offset_px(u_film.y);
   trace.ray_origin = load_lanes<F>(block->path.ray.origin, 0);
   trace.ray_direction = load_lanes<F>(block->path.ray.direction, 0);
-  const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
-  const PathRules* rules = settings.integrator.path_rules();
+  const LightSampler light_sampler = light_sampler_for(integrator, scene.lights);
+  const PathRules* rules = integrator.path_rules();
   std::optional<SampleTrace::LightSample> light_sample;
   const BlockWatcher watcher{
       .on_light_sample =
@@ -108,7 +109,7 @@ SampleTrace replay(const Scene& scene, const RenderSettings& settings, const Sam
               trace.vertices.back().light_sample = std::exchange(light_sample, std::nullopt);
           }};
   block->watcher = &watcher;
-  run_integrator<F>(settings.integrator, scene, light_sampler, *block, false);
+  run_integrator<F>(integrator, scene, light_sampler, *block, false);
   trace.radiance = load_lanes<F>(block->radiance, 0);
   return trace;
 }
