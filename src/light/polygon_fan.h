@@ -1,6 +1,7 @@
 // A convex polygon as a receiver sees it: a fan of triangles around its first corner.
 #pragma once
 
+#include "base/frame.h"
 #include "base/lane_vec.h"
 #include "base/lookup_table.h"
 #include "base/simd_math.h"
@@ -27,6 +28,16 @@ struct PolygonFan {
   Int<F> corners;
   int most;  ///< The greatest of `corners` among the lanes that ask.
 };
+
+/// The same with the frame's normal as z.
+template <class F>
+PolygonFan<F> in_frame(PolygonFan<F> fan, const Frame<F>& frame) {
+  fan.apex = frame.local_from_world(fan.apex);
+  for (std::size_t k = 1; k < std::size_t(fan.most); ++k)
+    fan.from_apex[k] = frame.local_from_world(fan.from_apex[k]);
+  fan.ng = frame.local_from_world(fan.ng);
+  return fan;
+}
 
 /// Polygons in memory, by row.
 class PolygonTable {

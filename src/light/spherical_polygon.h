@@ -1,7 +1,7 @@
 // The directions in which a receiver sees a convex polygon: their solid angle, and directions uniform in it.
 #pragma once
 
-#include "base/warp.h"
+#include "base/angles.h"
 #include "light/polygon_fan.h"
 
 namespace etendue {
@@ -61,7 +61,7 @@ class SphericalPolygon {
     const F triple = max(fan_.height, F(0)) * fan_.twice_area[std::size_t(k)];
     const F cosines = apex_length_ * b.length * c.length + b.dot_apex * c.length + c.dot_apex * b.length +
                       dot(b.place, c.place) * apex_length_;
-    return select(triple > F(0), F(2) * atan2(triple, cosines), F(0));
+    return select(triple > F(0), F(2) * half_turn_angle(triple, cosines), F(0));
   }
 
   /// \param part of the triangle's solid angle that lies before the point (sr)
@@ -76,7 +76,7 @@ class SphericalPolygon {
     // The point on the side opposite to the apex that cuts this part off. It lies on the circle of all third
     // corners that give the part (Lexell), through the opposite directions of apex and b.
     F sine, cosine;
-    sincos_turns(part * F(0.25f * inv_pi), sine, cosine);
+    sincos_half_turn(part * F(0.5f), sine, cosine);
     const F ratio =
         sine * (F(1) + cos_ab) / max(cosine * triple - sine * (cos_ac - cos_bc * cos_ab), F(least_divisor));
     const F to_c = F(2) * ratio * b.length,
