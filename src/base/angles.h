@@ -22,16 +22,17 @@ inline constexpr float arc_tangent[] = {1.0f,          -0.333330929f,  0.1999305
                                         0.0430393f,    -0.0162829664f, 0.00290354202f};
 }  // namespace polynomial
 
-/// Sine and cosine of an angle in [0, pi]; to 2e-7, the sine of small angles to 2e-7 of itself.
+/// Sine and cosine of an angle in [0, pi]; to 4e-7, the sine of small angles to 3e-7 of itself.
 template <class F>
 void sincos_half_turn(const F& angle, F& sine, F& cosine) {
   const F half = F(0.5f) * angle, z = half * half;
-  const F sine_of_half = half * polynomial::value(polynomial::sine, z);
-  sine = F(2) * sine_of_half * polynomial::value(polynomial::cosine, z);
-  cosine = F(1) - F(2) * sine_of_half * sine_of_half;
+  const F sine_of_half = half * polynomial::value(polynomial::sine, z),
+          cosine_of_half = polynomial::value(polynomial::cosine, z);
+  sine = F(2) * sine_of_half * cosine_of_half;
+  cosine = (cosine_of_half - sine_of_half) * (cosine_of_half + sine_of_half);
 }
 
-/// The angle of (x, y), y >= 0, from the x axis, in [0, pi]; to 3e-7 of itself. 0 for (0, 0).
+/// The angle of (x, y), y >= 0, from the x axis, in [0, pi]; to 4e-7 of itself. 0 for (0, 0).
 template <class F>
 F half_turn_angle(const F& y, const F& x) {
   constexpr float half_pi = 1.57079632679489661923f, pi = 3.14159265358979323846f;

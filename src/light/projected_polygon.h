@@ -26,7 +26,8 @@ class ProjectedPolygon {
     projected_solid_angle_ = F(0);
     for (int k = 0; k <= clip_.sides; ++k)
       projected_solid_angle_ = projected_solid_angle_ + parts_[std::size_t(k)];
-    is_accurate_ = mask_and(projected_solid_angle_ > F(0), projected_solid_angle_ * F(1024) > subtracted_);
+    constexpr float most_angles = 4096;  // Over the measure; each is off by some 2^-24.
+    is_accurate_ = mask_and(projected_solid_angle_ > F(0), projected_solid_angle_ * F(most_angles) > angles_);
   }
 
   /// Of what is above the horizon (sr), 0 .. pi.
@@ -53,11 +54,11 @@ class ProjectedPolygon {
       sum = sum + parts_[n];
     }
     const Vec2<F> u_part{min((target - before) / part, F(1)), u.y};
-    if (all(has_zenith_)) return sample_below(begin, end, u_part);
+    if (all(has_zenith_)) return below(begin, end).sample(u_part);
     const Vec3<F> first = first_corner();
     const ProjectedTriangle<F> triangle(clip_.first_corner + first, begin - first, end - first, height_);
     const Vec3<F> direction = triangle.sample(u_part);
-    return any(has_zenith_) ? select(has_zenith_, sample_below(begin, end, u_part), direction) : direction;
+    return any(has_zenith_) ? select(has_zenith_, below(begin, end).sample(u_part), direction) : direction;
   }
 
  private:
@@ -84,31 +85,31 @@ class ProjectedPolygon {
     return width_sq < F(small * small) * length_sq(fan.apex);
   }
 
-  /// Between the zenith and a side (sr). \param begin, along from the first corner, and from there
-  F below(const Vec3<F>& begin, const Vec3<F>& along) const {
-    return zenith_triangle_projected_solid_angle(clip_.first_corner + begin, along);
+  /// \param begin, end from the whole polygon's first corner
+  ZenithTriangle<F> below(const Vec3<F>& begin, const Vec3<F>& end) const {
+    return {clip_.first_corner + begin, end - begin};
   }
 
   void sum_arcs(const Mask<F>& needs_arcs) {
-    const bool are_all_around_zenith = all(has_zenith_);
     const Vec3<F> first = first_corner();
+    const Mask<F> is_beside = mask_and(needs_arcs, mask_not(has_zenith_));
+    const bool is_any_beside = any(is_beside);
     F spoke(0);
-    if (!are_all_around_zenith) spoke = below(first, clip_.begin[0] - first);
+    if (is_any_beside) spoke = below(first, clip_.begin[0]).signed_projected_solid_angle;
     for (std::size_t k = 0; k < std::size_t(clip_.sides); ++k) {
-      const Vec3<F> begin = clip_.begin[k], end = clip_.end[k];
-      parts_[k] = below(begin, end - begin);
-      if (are_all_around_zenith) continue;
-      const F side = parts_[k], next_spoke = below(first, end - first);
+      const ZenithTriangle<F> side = below(clip_.begin[k], clip_.end[k]);
+      parts_[k] = side.signed_projected_solid_angle;
+      if (!is_any_beside) continue;
+      const ZenithTriangle<F> next_spoke = below(first, clip_.end[k]);
       // Where the outline comes up again the fan begins.
-      const F last_spoke = select(length_sq(begin - first) > F(0), spoke, F(0));
-      const Mask<F> is_beside = mask_and(needs_arcs, mask_not(has_zenith_));
-      parts_[k] = select(is_beside, max(last_spoke + side - next_spoke, F(0)), side);
-      subtracted_ = subtracted_ + select(is_beside, abs(side) + abs(next_spoke), F(0));
-      spoke = next_spoke;
+      const F last_spoke = select(length_sq(clip_.begin[k] - first) > F(0), spoke, F(0));
+      spoke = next_spoke.signed_projected_solid_angle;
+      parts_[k] = select(is_beside, max(last_spoke + parts_[k] - spoke, F(0)), parts_[k]);
+      angles_ = angles_ + select(is_beside, side.angle + next_spoke.angle, F(0));
     }
-    const Vec3<F> horizon = clip_.cut_begin - clip_.cut_end;
     parts_[std::size_t(clip_.sides)] =
-        select(mask_and(has_zenith_, clip_.is_cut), below(clip_.cut_end, horizon), F(0));
+        select(mask_and(has_zenith_, clip_.is_cut),
+               below(clip_.cut_end, clip_.cut_begin).signed_projected_solid_angle, F(0));
   }
 
   /// cos(theta) dw = z height / |p|^4 dA over the triangles' areas, by the six points of Dunavant 1985 that
@@ -135,15 +136,12 @@ class ProjectedPolygon {
     }
   }
 
-  Vec3<F> sample_below(const Vec3<F>& begin, const Vec3<F>& end, const Vec2<F>& u) const {
-    return sample_zenith_triangle(clip_.first_corner + begin, end - begin, u);
-  }
-
   HorizonClip<F> clip_;
   F height_;
   Mask<F> has_zenith_, is_small_;
   std::array<F, most_corners + 1> parts_;  ///< Of the sides, and of the horizon's.
-  F projected_solid_angle_, subtracted_ = F(0);
+  F projected_solid_angle_;
+  F angles_ = F(0);  ///< Whose cosines were added and subtracted.
   Mask<F> is_accurate_;
 };
 

@@ -51,7 +51,8 @@ class ProjectedSector {
     const Vec3<F> low = tip_ * cosine + tangent_ * sine;
     const F inside = u_height * held(low.z, rise_ * sine);
     const F across = sqrt(F(1) - inside);
-    return {low.x * across, low.y * across, sqrt(low.z * low.z + (F(1) - low.z * low.z) * inside)};
+    return normalize(
+        Vec3<F>{low.x * across, low.y * across, sqrt(low.z * low.z + (F(1) - low.z * low.z) * inside)});
   }
 
  private:
