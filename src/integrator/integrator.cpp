@@ -53,7 +53,7 @@ PathRules path_mis_rules(Heuristic heuristic) { return PathRules::paths(ByBoth{h
 /// What has been measured to be best, docs/light_sampling.md.
 ByBoth best_rules(Heuristic heuristic) {
   return {.heuristic = heuristic,
-          .lights = {.count = env("N", 1), .sampler = "tree", .candidates = env("M", 8), .later_candidates = env("ML", 1)},
+          .lights = {.count = env("N", 1), .sampler = "tree", .candidates = env("M", 8), .later_candidates = env("ML", 1), .technique = LightTechnique(env("TECH", 0))},
           .only_where_glossy = true};
 }
 PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic)); }
@@ -142,6 +142,7 @@ std::string_view name_of(Heuristic heuristic) {
 
 std::string text_of(const LightSamples& lights) {
   std::string text = fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
+  if (lights.technique != LightTechnique::area) text += fmt::format(" technique={}", int(lights.technique));
   if (lights.candidates > 1 || lights.later_candidates > 1)
     text += fmt::format(" candidates={},{}", lights.candidates, lights.later_candidates);
   return text;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/simd_math.h"
+#include "light/technique.h"
 
 #include <algorithm>
 #include <string_view>
@@ -19,6 +20,7 @@ struct LightSamples {
   std::string_view sampler = "uniform";  ///< Which light: a name of light_sampler_plugins().
   /// Of which each light sample is one, chosen by what they would add: at the first vertex, and behind it.
   int candidates = 1, later_candidates = 1;
+  LightTechnique technique = LightTechnique::area;  ///< Where on the light.
 
   friend bool operator==(const LightSamples&, const LightSamples&) = default;
 };
