@@ -39,7 +39,8 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   // (`LuminaireQueryRecord`, `pdf`), the geometry term but for the receiver's cosine.
   DirectLightSample<F> sample;
   sample.light = scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u_light.y},
-                                        mask_and(vertex.is_there, choice.pmf > F(0)), choice.facet);
+                                        mask_and(vertex.is_there, choice.pmf > F(0)), choice.facet,
+                                        rules.light_samples()->technique);
 
   // Scatter it: BSDF times cosine, on the sides of the surface that agree with its shading normal.
   const Frame<F> frame(vertex.ns);

@@ -77,11 +77,13 @@ template <class F>
     const Mask<F> is_front = mask_and(is_light, mask_or(is_turned, cos_theta_ray < F(0)));
     if (!any(is_front)) continue;
     const F weight = weight_at_hit<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
-      const Int<F> facet = light_sampler.chooses_facets()
+      const LightTechnique technique = rules.light_samples()->technique;
+      const Int<F> facet = light_sampler.chooses_facets() || technique != LightTechnique::area
                                ? scene.lights.facet_at<F>(light, hit.primitive, is_front)
                                : Int<F>(whole_light);
       const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), facet);
-      const LightHit<F> met{ray.origin + ray.direction * hit.t, ng, ray.direction, facet};
+      const LightHit<F> met{ray.origin + ray.direction * hit.t, ng,       ray.direction, facet,
+                            light_sampler.chooses_facets(),     technique};
       return scene.lights.pdf_solid_angle<F>(light, pmf, receiver, met, is_front);
     });
     add_contribution<F>(

@@ -51,7 +51,11 @@ PathRules path_mis_rules(Heuristic heuristic) { return PathRules::paths(ByBoth{h
 /// What has been measured to be best, docs/light_sampling.md.
 ByBoth best_rules(Heuristic heuristic) {
   return {.heuristic = heuristic,
-          .lights = {.count = 4, .sampler = "tree", .later_count = 1, .candidates = 0},
+          .lights = {.count = 4,
+                     .sampler = "tree",
+                     .later_count = 1,
+                     .candidates = 0,
+                     .technique = LightTechnique::automatic},
           .only_where_glossy = true};
 }
 PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic)); }
@@ -141,6 +145,7 @@ std::string text_of(const LightSamples& lights) {
   std::string text = fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
   if (lights.later_count > 0) text += fmt::format(" later_light_samples={}", lights.later_count);
   if (lights.candidates != 1) text += fmt::format(" candidates={}", lights.candidates);
+  if (lights.technique != LightTechnique::area) text += fmt::format(" technique={}", int(lights.technique));
   return text;
 }
 std::string text_of(const ByLights& by) { return text_of(by.lights); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/simd_math.h"
+#include "light/technique.h"
 
 #include <algorithm>
 #include <string_view>
@@ -21,6 +22,7 @@ struct LightSamples {
   /// Each light sample of the first vertex is one of so many candidates, chosen by what they would add. 0: by
   /// what there is to choose from, see settled().
   int candidates = 1;
+  LightTechnique technique = LightTechnique::area;  ///< Where on the light.
 
   friend bool operator==(const LightSamples&, const LightSamples&) = default;
 };

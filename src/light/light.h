@@ -52,23 +52,25 @@ class Lights : public LightTables {
   /// chosen \param u 32-bit fractions
   template <class F>
   LightSample<F> sample(const Int<F>& light, const F& pmf, const Receiver<F>& receiver,
-                        const Vec2<UInt<F>>& u, const Mask<F>& m,
-                        const Int<F>& facet = Int<F>(whole_light)) const {
+                        const Vec2<UInt<F>>& u, const Mask<F>& m, const Int<F>& facet = Int<F>(whole_light),
+                        LightTechnique technique = LightTechnique::area) const {
     // Most scenes have lights of one kind only: then no lane needs to be chosen from another table, and a
     // light's id is its row.
     if (table<MeshLights>().count() == count()) {
       const Int<F> safe = select(m, light, Int<F>(0));
-      return table<MeshLights>().sample<F>(request<F>(light, safe, facet, pmf, receiver, u, m));
+      return table<MeshLights>().sample<F>(request<F>(light, safe, facet, pmf, receiver, u, m, technique));
     }
     LightSample<F> result = no_light_sample<F>();
     if (surface_count_ < count()) {
-      sample_every_kind<F>(light, facet, pmf, receiver, u, m, result);
+      sample_every_kind<F>(light, facet, pmf, receiver, u, m, technique, result);
       return result;
     }
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       if constexpr (SurfaceLightTable<std::remove_cvref_t<decltype(table)>>)
         result = select(
-            lanes, table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes)), result);
+            lanes,
+            table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes, technique)),
+            result);
     });
     return result;
   }
@@ -140,7 +142,8 @@ class Lights : public LightTables {
 
   template <class F>
   LightRequest<F> request(const Int<F>& light, const Int<F>& row, const Int<F>& facet, const F& pmf,
-                          const Receiver<F>& receiver, const Vec2<UInt<F>>& u, const Mask<F>& lanes) const {
+                          const Receiver<F>& receiver, const Vec2<UInt<F>>& u, const Mask<F>& lanes,
+                          LightTechnique technique) const {
     return {scene_bounds_,
             receiver,
             u,
@@ -150,17 +153,20 @@ class Lights : public LightTables {
             emissions_.strength<F>(light, lanes),
             emissions_.is_twosided<F>(light, lanes),
             pmf,
-            lanes};
+            lanes,
+            technique};
   }
 
   /// Apart, so that the code of all kinds does not weigh on scenes with lights on surfaces only.
   template <class F>
   [[gnu::noinline]] void sample_every_kind(const Int<F>& light, const Int<F>& facet, const F& pmf,
                                            const Receiver<F>& receiver, const Vec2<UInt<F>>& u,
-                                           const Mask<F>& m, LightSample<F>& result) const {
+                                           const Mask<F>& m, LightTechnique technique,
+                                           LightSample<F>& result) const {
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
-      result = select(lanes, table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes)),
-                      result);
+      result = select(
+          lanes, table.template sample<F>(request<F>(light, row, facet, pmf, receiver, u, lanes, technique)),
+          result);
     });
   }
 

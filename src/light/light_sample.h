@@ -5,6 +5,7 @@
 #include "geometry/geometry.h"
 #include "light/light_point.h"
 #include "light/receiver.h"
+#include "light/technique.h"
 
 #include <cstdint>
 #include <limits>
@@ -26,6 +27,7 @@ struct LightRequest {
   Mask<F> is_twosided;  ///< Surfaces that shine from their back side too.
   F pmf;                ///< With which light and facet were chosen: densities have it in them.
   Mask<F> lanes;        ///< Those that ask.
+  LightTechnique technique = LightTechnique::area;
 };
 
 /// Where a ray has met a light.
@@ -33,7 +35,9 @@ template <class F>
 struct LightHit {
   Vec3<F> position, ng;  ///< World, m; unit, on the side that the ray has met.
   Vec3<F> wi;            ///< Unit, from the receiver.
-  Int<F> facet;          ///< Which the light's samples choose; whole_light where they choose none.
+  Int<F> facet;  ///< Of the light; whole_light where samples neither choose facets nor look at their shape.
+  bool is_facet_chosen = false;                     ///< By the samples' pmf.
+  LightTechnique technique = LightTechnique::area;  ///< Of the samples.
 };
 
 template <class F>

@@ -59,24 +59,50 @@ class PieceGrid {
   std::size_t first_axis_, second_axis_;
 };
 
+/// Of each part of a light, by the places of their centres: the first in the low byte, their number above.
+std::vector<std::int32_t> pieces_of(const std::vector<Vec3f>& centers) {
+  const PieceGrid grid(centers);
+  const std::size_t count = centers.size();
+  std::vector<std::int32_t> pieces;
+  for (std::size_t k = 0; k < count; ++k) {
+    // Of a light with few parts, each has several pieces.
+    const auto begin = std::int32_t(k * light_pieces / count),
+               end = std::int32_t((k + 1) * light_pieces / count);
+    pieces.push_back(count >= light_pieces ? grid.piece(centers[k]) | 1 << 8 : begin | (end - begin) << 8);
+  }
+  return pieces;
+}
+
 }  // namespace
 
-double MeshLights::facet_area_share(std::int32_t row, std::int32_t facet) const {
-  return 0.5 * length(across(row, facet)) * pdf_area_[row];
-}
-
 LightBounds MeshLights::facet_bounds(std::int32_t row, std::int32_t facet) const {
-  const float* triangle = triangles_.data() + 9 * std::size_t(first_triangle_[row] + facet);
-  const auto vec = [&](int k) { return Vec3f{triangle[k], triangle[k + 1], triangle[k + 2]}; };
-  Box box;
-  for (const Vec3f& corner : {vec(0), vec(0) + vec(3), vec(0) + vec(6)}) box.include(corner);
-  return bounds_of(box, {across(row, facet)});
+  const std::int32_t polygon = first_facet_[row] + facet;
+  return {polygons_.box(polygon), polygons_.ng(polygon), 1 - 1e-6f, 0};
 }
 
-Vec3<double> MeshLights::across(std::int32_t row, std::int32_t facet) const {
-  const float* triangle = triangles_.data() + 9 * std::size_t(first_triangle_[row] + facet);
-  const auto vec = [&](int k) { return Vec3<double>{triangle[k], triangle[k + 1], triangle[k + 2]}; };
-  return cross(vec(3), vec(6));
+void MeshLights::add_facets(const Geometry& geometry, std::int32_t geometry_id) {
+  const auto first = std::size_t(geometry.first_triangle[std::size_t(geometry_id)]);
+  const auto count = std::size_t(geometry.triangles[std::size_t(geometry_id)]);
+  const ConvexPieces facets =
+      convex_pieces(geometry.positions, std::span(geometry.indices).subspan(3 * first, 3 * count));
+  first_facet_.push_back(polygons_.count());
+  facet_count_.push_back(facets.count());
+  facet_of_triangle_.insert(facet_of_triangle_.end(), facets.piece.begin(), facets.piece.end());
+  std::vector<double> areas;
+  std::vector<Vec3f> centers;
+  for (std::int32_t k = 0; k < facets.count(); ++k) {
+    const auto begin = std::size_t(facets.first_corner[std::size_t(k)]),
+               end = std::size_t(facets.first_corner[std::size_t(k) + 1]);
+    const std::int32_t polygon = polygons_.add(std::span(facets.corners).subspan(begin, end - begin));
+    areas.push_back(polygons_.area(polygon));
+    const Box box = polygons_.box(polygon);
+    centers.push_back((box.low + box.high) * 0.5f);
+  }
+  const std::vector<std::int32_t> pieces = pieces_of(centers);
+  facet_pieces_.insert(facet_pieces_.end(), pieces.begin(), pieces.end());
+  const AliasTable table = make_alias_table(areas);
+  facet_threshold_.insert(facet_threshold_.end(), table.threshold.begin(), table.threshold.end());
+  facet_alias_.insert(facet_alias_.end(), table.alias.begin(), table.alias.end());
 }
 
 std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id) {
@@ -104,19 +130,15 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
   }
   constexpr std::size_t few_a_piece = 2;
   finely_built_count_ += thick_boxes > few_a_piece * light_pieces;
-  const PieceGrid grid(centers);
-  for (std::size_t t = 0; t < count; ++t) {
-    // Of a light with few triangles, each has several pieces.
-    const auto begin = std::int32_t(t * light_pieces / count),
-               end = std::int32_t((t + 1) * light_pieces / count);
-    pieces_.push_back(count >= light_pieces ? grid.piece(centers[t]) | 1 << 8 : begin | (end - begin) << 8);
-  }
+  const std::vector<std::int32_t> pieces = pieces_of(centers);
+  pieces_.insert(pieces_.end(), pieces.begin(), pieces.end());
   const AliasTable table = make_alias_table(areas);
   alias_threshold_.insert(alias_threshold_.end(), table.threshold.begin(), table.threshold.end());
   alias_.insert(alias_.end(), table.alias.begin(), table.alias.end());
   pdf_area_.push_back(float(1 / total_area));
   longest_edge_.push_back(geometry.longest_edge[std::size_t(geometry_id)]);
   bounds_.push_back(bounds_of(box, across));
+  add_facets(geometry, geometry_id);
   return pdf_area_.size() - 1;
 }
 

@@ -1,4 +1,5 @@
-// Area lights on triangle meshes of any size: a triangle by area, then a point uniform within it.
+// Area lights on triangle meshes of any size: as the handouts do it, a triangle by area, then a point uniform
+// within it; or one of the convex polygons that flat parts of the mesh are cut into, by any technique.
 #pragma once
 
 #include "base/alias_table.h"
@@ -8,6 +9,7 @@
 #include "base/warp.h"
 #include "geometry/geometry.h"
 #include "light/light_table.h"
+#include "light/polygon_light.h"
 
 #include <cstdint>
 #include <vector>
@@ -29,36 +31,49 @@ class MeshLights {
   static constexpr LightPlace place = LightPlace::surface;
 
   template <class F>
-  LightSample<F> sample(const LightRequest<F>& request) const {
+  LightSample<F> sample(LightRequest<F> request) const {
     const Mask<F> is_whole = less(request.facet, Int<F>(0));
-    if (all(is_whole)) return light_sample_at(sample_position<F>(request.row, request.u), request);
-    const LightPoint<F> point = sample_facet<F>(request.row, select(is_whole, Int<F>(0), request.facet),
-                                                {to_unit_float(request.u.x), to_unit_float(request.u.y)});
-    if (!any(is_whole)) return light_sample_at(point, request);
-    return select(is_whole, light_sample_at(sample_position<F>(request.row, request.u), request),
-                  light_sample_at(point, request));
+    if (request.technique == LightTechnique::area && all(is_whole))
+      return light_sample_at(sample_position<F>(request.row, request.u), request);
+    const Int<F> first = first_facet_.at(request.row);
+    if (any(is_whole)) {
+      const AliasSample<F> facet = sample_alias<F>(facet_threshold_.data(), facet_alias_.data(), first,
+                                                   facet_count_.at(request.row), request.u.y);
+      request.facet = select(is_whole, facet.index, request.facet);
+      const UInt<F> left = as_uint(to_int(facet.u_left * F(0x1p24f))) << 8;
+      request.u.y = as_uint(select(is_whole, as_int(left), as_int(request.u.y)));
+      request.pmf =
+          select(is_whole, request.pmf * share_of<F>(request.row, first + request.facet), request.pmf);
+    }
+    const Int<F> polygon = first + request.facet;
+    const Int<F> pieces = gather(facet_pieces_.data(), polygon);
+    const Int<F> piece = (pieces & Int<F>(0xff)) + to_int(to_unit_float(request.u.x) * to_float(pieces >> 8));
+    return PolygonLight<F>(polygons_, polygon, request.receiver, request.is_twosided, request.technique,
+                           request.lanes)
+        .sample(request, longest_edge_.at(request.row), piece);
   }
 
   template <class F>
   F pdf_solid_angle(const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
                     const LightHit<F>& hit) const {
-    const Mask<F> is_whole = less(hit.facet, Int<F>(0));
-    F pdf_area = pdf_area_.at(row);
-    if (!all(is_whole)) {
-      const Int<F> at = (first_triangle_.at(row) + select(is_whole, Int<F>(0), hit.facet)) * Int<F>(9);
-      const Vec3<F> across =
-          cross(gather_vec3<F>(triangles_.data() + 3, at), gather_vec3<F>(triangles_.data() + 6, at));
-      pdf_area = select(is_whole, pdf_area, F(2) / length(across));
-    }
-    return pdf_solid_angle_at(hit, receiver, pmf * pdf_area);
+    if (hit.technique == LightTechnique::area && !hit.is_facet_chosen)
+      return pdf_solid_angle_at(hit, receiver, pmf * pdf_area_.at(row));
+    const Int<F> polygon = first_facet_.at(row) + hit.facet;
+    const Mask<F> every_lane = F(0) < F(1);
+    const F pdf = PolygonLight<F>(polygons_, polygon, receiver, every_lane, hit.technique, every_lane)
+                      .pdf_solid_angle(hit);
+    return pdf * (hit.is_facet_chosen ? pmf : pmf * share_of<F>(row, polygon));
   }
 
-  std::int32_t facet_count(std::int32_t row) const { return triangle_count_[row]; }
-  double facet_area_share(std::int32_t row, std::int32_t facet) const;
+  // Facets are convex polygons that flat parts of the mesh make.
+  std::int32_t facet_count(std::int32_t row) const { return facet_count_[row]; }
+  double facet_area_share(std::int32_t row, std::int32_t facet) const {
+    return polygons_.area(first_facet_[row] + facet) * pdf_area_[row];
+  }
   LightBounds facet_bounds(std::int32_t row, std::int32_t facet) const;
   template <class F>
-  Int<F> facet_at(const Int<F>& /*row*/, const Int<F>& primitive) const {
-    return primitive;
+  Int<F> facet_at(const Int<F>& row, const Int<F>& primitive) const {
+    return gather(facet_of_triangle_.data(), first_triangle_.at(row) + primitive);
   }
 
   double power(std::int32_t row, const Sphere& /*scene_bounds*/) const { return pi / pdf_area_[row]; }
@@ -74,7 +89,18 @@ class MeshLights {
         sample_alias<F>(alias_threshold_.data(), alias_.data(), first, triangle_count_.at(row), u.y);
     const Vec2<F> u_triangle{to_unit_float(u.x), triangle.u_left};
 
-    LightPoint<F> point = sample_triangle<F>(row, first + triangle.index, u_triangle);
+    const float* corner = triangles_.data();
+    const I at = (first + triangle.index) * I(9);
+    const Vec3<F> origin = gather_vec3<F>(corner, at), edge_1 = gather_vec3<F>(corner + 3, at),
+                  edge_2 = gather_vec3<F>(corner + 6, at);
+    const Vec2<F> barycentric = square_to_triangle(u_triangle);
+
+    LightPoint<F> point;
+    const Vec3<F> along_1 = edge_1 * barycentric.x, along_2 = edge_2 * barycentric.y;
+    point.position = origin + along_1 + along_2;
+    point.ng = normalize(cross(edge_1, edge_2));
+    point.clearance = clearance<F>(point.ng, abs_each(origin) + abs_each(along_1) + abs_each(along_2),
+                                   longest_edge_.at(row));
     point.pdf_area = pdf_area_.at(row);
     const I pieces = gather(pieces_.data(), first + triangle.index);
     point.piece = (pieces & I(0xff)) + to_int(u_triangle.y * to_float(pieces >> 8));
@@ -82,36 +108,12 @@ class MeshLights {
   }
 
  private:
-  /// A point uniform on one triangle of the light.
+  /// Of the light's area.
   template <class F>
-  LightPoint<F> sample_facet(const Int<F>& row, const Int<F>& facet, const Vec2<F>& u) const {
-    return sample_triangle<F>(row, first_triangle_.at(row) + facet, u);
+  F share_of(const Int<F>& row, const Int<F>& polygon) const {
+    return polygons_.area_at<F>(polygon) * pdf_area_.at(row);
   }
-
-  /// \param triangle among those of all lights
-  template <class F>
-  LightPoint<F> sample_triangle(const Int<F>& row, const Int<F>& triangle, const Vec2<F>& u) const {
-    const float* corner = triangles_.data();
-    const Int<F> at = triangle * Int<F>(9);
-    const Vec3<F> origin = gather_vec3<F>(corner, at), edge_1 = gather_vec3<F>(corner + 3, at),
-                  edge_2 = gather_vec3<F>(corner + 6, at);
-    const Vec2<F> barycentric = square_to_triangle(u);
-
-    LightPoint<F> point;
-    const Vec3<F> along_1 = edge_1 * barycentric.x, along_2 = edge_2 * barycentric.y;
-    point.position = origin + along_1 + along_2;
-    const Vec3<F> across = cross(edge_1, edge_2);
-    const F twice_area = length(across);
-    point.ng = across * (F(1) / twice_area);
-    point.pdf_area = F(2) / twice_area;
-    point.clearance = clearance<F>(point.ng, abs_each(origin) + abs_each(along_1) + abs_each(along_2),
-                                   longest_edge_.at(row));
-    point.piece = gather(pieces_.data(), triangle) & Int<F>(0xff);
-    return point;
-  }
-
-  /// Twice the facet's area, along its normal.
-  Vec3<double> across(std::int32_t row, std::int32_t facet) const;
+  void add_facets(const Geometry& geometry, std::int32_t geometry_id);
 
   // Per light.
   LookupTable<std::int32_t> first_triangle_, triangle_count_;
@@ -119,6 +121,12 @@ class MeshLights {
   LookupTable<float> longest_edge_;  ///< m
   std::vector<LightBounds> bounds_;
   std::int32_t finely_built_count_ = 0;
+  // Per facet of all lights: its polygon, the alias table, pieces as of triangles.
+  LookupTable<std::int32_t> first_facet_, facet_count_;  ///< Per light.
+  PolygonTable polygons_;
+  std::vector<std::uint32_t> facet_threshold_;
+  std::vector<std::int32_t> facet_alias_, facet_pieces_;
+  std::vector<std::int32_t> facet_of_triangle_;  ///< Of all lights: its number in its light.
   // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first
   // in the low byte, their number above.
   std::vector<std::int32_t> pieces_;

@@ -1,4 +1,5 @@
-// Rectangular (and parallelogram) area lights: a point uniform over the whole.
+// Rectangular (and parallelogram) area lights: a point uniform over the whole, or as a polygon by any
+// technique.
 #pragma once
 
 #include "base/lane_vec.h"
@@ -7,7 +8,9 @@
 #include "base/warp.h"
 #include "geometry/geometry.h"
 #include "light/light_table.h"
+#include "light/polygon_light.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +25,8 @@ class RectangleLights {
     for (const Vec3f& v : {corner, edge_u, edge_v, ng}) fields_.insert(fields_.end(), {v.x, v.y, v.z});
     pdf_area_.push_back(1 / length(across));
     diagonal_.push_back(length(edge_u) + length(edge_v));
+    const std::array corners{corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v};
+    polygons_.add(corners);
     return pdf_area_.size() - 1;
   }
 
@@ -29,13 +34,23 @@ class RectangleLights {
 
   template <class F>
   LightSample<F> sample(const LightRequest<F>& request) const {
-    return light_sample_at(sample_position<F>(request.row, request.u), request);
+    if (request.technique == LightTechnique::area)
+      return light_sample_at(sample_position<F>(request.row, request.u), request);
+    const Int<F> piece =
+        to_int(to_unit_float(request.u.x) * F(4)) * Int<F>(4) + to_int(to_unit_float(request.u.y) * F(4));
+    return PolygonLight<F>(polygons_, request.row, request.receiver, request.is_twosided, request.technique,
+                           request.lanes)
+        .sample(request, diagonal_.at(request.row), piece);
   }
 
   template <class F>
   F pdf_solid_angle(const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
                     const LightHit<F>& hit) const {
-    return pdf_solid_angle_at(hit, receiver, pmf * pdf_area_.at(row));
+    if (hit.technique == LightTechnique::area)
+      return pdf_solid_angle_at(hit, receiver, pmf * pdf_area_.at(row));
+    const Mask<F> every_lane = F(0) < F(1);
+    return pmf * PolygonLight<F>(polygons_, row, receiver, every_lane, hit.technique, every_lane)
+                     .pdf_solid_angle(hit);
   }
 
   double power(std::int32_t row, const Sphere& /*scene_bounds*/) const { return pi / pdf_area_[row]; }
@@ -64,6 +79,7 @@ class RectangleLights {
  private:
   std::vector<float> fields_;  ///< Corner, two edges, normal: 12 a row.
   LookupTable<float> pdf_area_;
+  PolygonTable polygons_;
   LookupTable<float> diagonal_;  ///< At least as long as the longest edge of its triangles (m).
 };
 

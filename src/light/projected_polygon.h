@@ -1,0 +1,148 @@
+// Directions in which a receiver sees a convex polygon, weighed by the cosine at the receiver: their measure,
+// and directions with density in proportion to the cosine.
+#pragma once
+
+#include "light/horizon_clip.h"
+#include "light/projected_triangle.h"
+#include "light/zenith_triangle.h"
+
+namespace etendue {
+
+/// Peters 2021, "BRDF importance sampling for polygonal lights", with other parts: see
+/// docs/light_sampling.md. A polygon around the zenith is cut into triangles between the zenith and its
+/// sides, another into those of its fan.
+template <class F>
+class ProjectedPolygon {
+ public:
+  /// \param fan with the receiver's normal as z
+  explicit ProjectedPolygon(const PolygonFan<F>& fan)
+      : clip_(fan),
+        height_(max(fan.height, F(0))),
+        has_zenith_(is_around_zenith()),
+        is_small_(is_small(fan)) {
+    const Mask<F> needs_arcs = mask_or(has_zenith_, mask_not(is_small_));
+    if (any(needs_arcs)) sum_arcs(needs_arcs);
+    if (!all(needs_arcs)) sum_small(needs_arcs);
+    projected_solid_angle_ = F(0);
+    for (int k = 0; k <= clip_.sides; ++k)
+      projected_solid_angle_ = projected_solid_angle_ + parts_[std::size_t(k)];
+    constexpr float most_angles = 4096;  // Over the measure; each is off by some 2^-24.
+    is_accurate_ = mask_and(projected_solid_angle_ > F(0), projected_solid_angle_ * F(most_angles) > angles_);
+  }
+
+  /// Of what is above the horizon (sr), 0 .. pi.
+  const F& projected_solid_angle() const { return projected_solid_angle_; }
+
+  /// Elsewhere rounding has eaten more than about 1e-4 of the measure: the polygon is a thin line to the
+  /// receiver, or stands low over the horizon. Sampling by solid angle has no such trouble.
+  const Mask<F>& is_accurate() const { return is_accurate_; }
+
+  /// A direction, unit, with the density cos(theta) / projected_solid_angle(). Neighbours in u are neighbours
+  /// but for the borders between the triangles of a fan.
+  Vec3<F> sample(const Vec2<F>& u) const {
+    const F target = u.x * projected_solid_angle_;
+    Vec3<F> begin = clip_.begin[0], end = clip_.end[0];
+    F before(0), part(1), sum(0);
+    for (int k = 0; k <= clip_.sides; ++k) {
+      const auto n = std::size_t(k);
+      const bool is_horizon = k == clip_.sides;
+      const Mask<F> is_here = mask_and(target >= sum, parts_[n] > F(0));
+      begin = select(is_here, is_horizon ? clip_.cut_end : clip_.begin[n], begin);
+      end = select(is_here, is_horizon ? clip_.cut_begin : clip_.end[n], end);
+      before = select(is_here, sum, before);
+      part = select(is_here, parts_[n], part);
+      sum = sum + parts_[n];
+    }
+    const Vec2<F> u_part{min((target - before) / part, F(1)), u.y};
+    if (all(has_zenith_)) return below(begin, end).sample(u_part);
+    const Vec3<F> first = first_corner();
+    const ProjectedTriangle<F> triangle(clip_.first_corner + first, begin - first, end - first, height_);
+    const Vec3<F> direction = triangle.sample(u_part);
+    return any(has_zenith_) ? select(has_zenith_, below(begin, end).sample(u_part), direction) : direction;
+  }
+
+ private:
+  /// Of the fan's triangles, from the whole polygon's first corner.
+  Vec3<F> first_corner() const { return clip_.cut_begin; }
+
+  Mask<F> is_around_zenith() const {
+    Mask<F> is_left_of_none = clip_.first_corner.z == clip_.first_corner.z, is_right_of_any = F(0) > F(1);
+    for (std::size_t k = 0; k < std::size_t(clip_.sides); ++k) {
+      const Vec3<F> place = clip_.first_corner + clip_.begin[k], side = clip_.end[k] - clip_.begin[k];
+      const F turn = place.x * side.y - place.y * side.x;
+      is_left_of_none = mask_and(is_left_of_none, turn <= F(0));
+      is_right_of_any = mask_or(is_right_of_any, turn < F(0));
+    }
+    return mask_and(is_left_of_none, is_right_of_any);
+  }
+
+  static Mask<F> is_small(const PolygonFan<F>& fan) {
+    F width_sq(0);
+    for (int k = 1; k < fan.most; ++k)
+      width_sq =
+          max(width_sq, select(less(Int<F>(k), fan.corners), length_sq(fan.from_apex[std::size_t(k)]), F(0)));
+    constexpr float small = 0.08f;  // There six points give the measure to 1e-6.
+    return width_sq < F(small * small) * length_sq(fan.apex);
+  }
+
+  /// \param begin, end from the whole polygon's first corner
+  ZenithTriangle<F> below(const Vec3<F>& begin, const Vec3<F>& end) const {
+    return {clip_.first_corner + begin, end - begin};
+  }
+
+  void sum_arcs(const Mask<F>& needs_arcs) {
+    const Vec3<F> first = first_corner();
+    const Mask<F> is_beside = mask_and(needs_arcs, mask_not(has_zenith_));
+    const bool is_any_beside = any(is_beside);
+    F spoke(0);
+    if (is_any_beside) spoke = below(first, clip_.begin[0]).signed_projected_solid_angle;
+    for (std::size_t k = 0; k < std::size_t(clip_.sides); ++k) {
+      const ZenithTriangle<F> side = below(clip_.begin[k], clip_.end[k]);
+      parts_[k] = side.signed_projected_solid_angle;
+      if (!is_any_beside) continue;
+      const ZenithTriangle<F> next_spoke = below(first, clip_.end[k]);
+      // Where the outline comes up again the fan begins.
+      const F last_spoke = select(length_sq(clip_.begin[k] - first) > F(0), spoke, F(0));
+      spoke = next_spoke.signed_projected_solid_angle;
+      parts_[k] = select(is_beside, max(last_spoke + parts_[k] - spoke, F(0)), parts_[k]);
+      angles_ = angles_ + select(is_beside, side.angle + next_spoke.angle, F(0));
+    }
+    parts_[std::size_t(clip_.sides)] =
+        select(mask_and(has_zenith_, clip_.is_cut),
+               below(clip_.cut_end, clip_.cut_begin).signed_projected_solid_angle, F(0));
+  }
+
+  /// cos(theta) dw = z height / |p|^4 dA over the triangles' areas, by the six points of Dunavant 1985 that
+  /// are exact for polynomials of degree 4: nothing is subtracted.
+  void sum_small(const Mask<F>& needs_arcs) {
+    constexpr std::array near_a{0.445948490915965f, 0.223381589678011f},
+        near_b{0.091576213509771f, 0.109951743655322f};
+    const Vec3<F> first = first_corner(), place = clip_.first_corner + first;
+    for (std::size_t k = 0; k <= std::size_t(clip_.sides); ++k) {
+      const bool is_horizon = k == std::size_t(clip_.sides);
+      F part(0);
+      if (!is_horizon) {
+        const Vec3<F> b = clip_.begin[k] - first, c = clip_.end[k] - first;
+        for (const auto& [share, weight] : {near_a, near_b})
+          for (const auto& [to_b, to_c] :
+               {std::array{share, share}, {1 - 2 * share, share}, {share, 1 - 2 * share}}) {
+            const Vec3<F> p = place + b * F(to_b) + c * F(to_c);
+            const F inv_sq = F(1) / length_sq(p);
+            part = part + F(0.5f * weight) * max(p.z, F(0)) * inv_sq * inv_sq;
+          }
+        part = part * height_ * length(cross(b, c));
+      }
+      parts_[k] = any(needs_arcs) ? select(needs_arcs, parts_[k], part) : part;
+    }
+  }
+
+  HorizonClip<F> clip_;
+  F height_;
+  Mask<F> has_zenith_, is_small_;
+  std::array<F, most_corners + 1> parts_;  ///< Of the sides, and of the horizon's.
+  F projected_solid_angle_;
+  F angles_ = F(0);  ///< Whose cosines were added and subtracted.
+  Mask<F> is_accurate_;
+};
+
+}  // namespace etendue

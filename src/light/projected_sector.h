@@ -1,0 +1,120 @@
+// Part of a spherical triangle beside the zenith: its projected solid angle, and directions with density in
+// proportion to the cosine.
+#pragma once
+
+#include "base/angles.h"
+#include "base/lane_vec.h"
+
+namespace etendue {
+
+/// The part between the azimuths of one corner, the tip, and of the triangle's middle corner. Two sides bound
+/// it, the low one and the high one; both are followed by the angle along the low one, from the tip.
+///
+/// A side bounds, together with the zenith, half its angle times the cosine of its plane (Lambert 1760); the
+/// sector is the difference. Where that would be one of nearly equal numbers, what the sector holds at each
+/// angle is integrated: 1 - 1 / (1 + w (2 z + w)), for a low side at height z of the unit sphere and a high
+/// one above it by w (both before they are brought back to the sphere).
+template <class F>
+class ProjectedSector {
+ public:
+  /// \param tip from the receiver (m), with the zenith as z, z >= 0 \param to_middle from there to the middle
+  /// corner \param rise from the long side up to the middle corner (m), < 0 where the long side is the high
+  /// one \param turn the z of the cross product of tip and middle corner (m^2), >= 0
+  ProjectedSector(const Vec3<F>& tip, const Vec3<F>& to_middle, const F& rise, const F& turn) {
+    const F gap = abs(rise), tip_length = length(tip), inv_tip = F(1) / tip_length;
+    const Vec3<F> to_low{to_middle.x, to_middle.y, to_middle.z - max(rise, F(0))};
+    const Vec3<F> to_high{to_middle.x, to_middle.y, to_middle.z - min(rise, F(0))};
+    const F across_low = max(length(cross(tip, to_low)), F(tiny)),
+            across_high = max(length(cross(tip, to_high)), F(tiny));
+    tip_ = tip * inv_tip;
+    const F along = dot(tip_, to_low), inv_across = tip_length / across_low;
+    tangent_ = (to_low - tip_ * along) * inv_across;
+    rise_ = gap * inv_across;
+    cos_low_ = turn / across_low;
+    cos_high_ = turn / across_high;
+    sine_by_sine_ = across_high / across_low;
+    angle_ = half_turn_angle(across_low, dot(tip, tip + to_low));
+    at_half_ = share_held(F(0.5f) * angle_);
+    at_end_ = share_held(angle_);
+    constexpr float small = 0.03f;  // Where both ways of integrating are off by some 1e-5.
+    is_small_ = mask_and(angle_ < F(small), rise_ * angle_ < F(small));
+    area_ = area_up_to(F(1));
+  }
+
+  const F& area() const { return area_; }  ///< The projected solid angle (sr).
+
+  /// A direction, unit. \param u_area the share of the area between the tip's azimuth and its own
+  /// \param u_height 0: on the low side, 1: on the high one
+  Vec3<F> sample(const F& u_area, const F& u_height) const {
+    F sine, cosine;
+    sincos_half_turn(share_of_angle(u_area) * angle_, sine, cosine);
+    const Vec3<F> low = tip_ * cosine + tangent_ * sine;
+    const F inside = u_height * held(low.z, rise_ * sine);
+    const F across = sqrt(F(1) - inside);
+    return normalize(
+        Vec3<F>{low.x * across, low.y * across, sqrt(low.z * low.z + (F(1) - low.z * low.z) * inside)});
+  }
+
+ private:
+  static constexpr float tiny = 1e-30f;
+
+  /// Of the disk below the low side, what lies between both sides.
+  static F held(const F& z, const F& w) {
+    const F more = w * (F(2) * max(z, F(0)) + w);
+    return more / (F(1) + more);
+  }
+  F share_held(const F& angle) const {
+    F sine, cosine;
+    sincos_half_turn(angle, sine, cosine);
+    return held(tip_.z * cosine + tangent_.z * sine, rise_ * sine);
+  }
+
+  /// \param share of the angle
+  F area_up_to(const F& share) const {
+    // `held` by a parabola.
+    const F slope = F(4) * at_half_ - at_end_, bend = F(2) * at_end_ - F(4) * at_half_;
+    const F by_parabola =
+        F(0.5f) * cos_low_ * angle_ * share * share * (F(0.5f) * slope + F(1.0f / 3) * bend * share);
+    if (all(is_small_)) return by_parabola;
+    F sine, cosine;
+    const F angle = angle_ * share;
+    sincos_half_turn(angle, sine, cosine);
+    const F high_angle = half_turn_angle(sine_by_sine_ * sine, cosine + rise_ * tip_.z * sine);
+    return select(is_small_, by_parabola, max(F(0.5f) * (cos_low_ * angle - cos_high_ * high_angle), F(0)));
+  }
+
+  //// The inverse of area_up_to
+  F share_of_angle(const F& u) const {
+    const F inv_area = F(1) / max(area_, F(tiny)), density = F(0.5f) * cos_low_ * angle_ * inv_area;
+    const F half = area_up_to(F(0.5f)) * inv_area;
+    const F inv_at_half = F(1) / max(density * at_half_, F(tiny)),
+            inv_at_end = F(1) / max(density * at_end_, F(tiny));
+    // Before the middle the area grows as between x^2 and x.
+    const F root = sqrt(u / max(half, F(tiny))), growth = F(2) * half * inv_at_half;
+    const F before = root * ((F(1) - growth) + (growth - F(0.5f)) * root);
+    // Behind it a cubic with the right slopes.
+    const F rest = F(1) - half, t = (u - half) / max(rest, F(tiny));
+    const F behind =
+        F(0.5f) + t * (rest * inv_at_half + t * (F(1.5f) - rest * (F(2) * inv_at_half + inv_at_end) +
+                                                 t * (rest * (inv_at_half + inv_at_end) - F(1))));
+    F share = max(min(select(u < half, min(before, F(0.5f)), max(behind, F(0.5f))), F(1)), F(0));
+    constexpr int steps = 2;
+    for (int step = 0; step < steps; ++step) {
+      const F excess = area_up_to(share) * inv_area - u;
+      const F next = share - excess / max(density * share_held(share * angle_), F(tiny));
+      share = select(next < F(0), share * F(0.5f), select(next > F(1), (share + F(1)) * F(0.5f), next));
+    }
+    return share;
+  }
+
+  Vec3<F> tip_, tangent_;  ///< Unit: where the low side begins, and the way it goes there.
+  F angle_;                ///< Of the low side.
+  F rise_;                 ///< Of the high side above the low one, over the sine of the angle.
+  F cos_low_, cos_high_;   ///< Of the planes of both sides.
+  F sine_by_sine_;         ///< Of the angles along the high and the low side, over the azimuth's.
+  F at_half_, at_end_;     ///< What is held at half of the angle and at all of it.
+  F area_;
+  Mask<F> is_small_;
+};
+
+}  // namespace etendue
