@@ -18,20 +18,26 @@ struct SampleNumber {
   std::int32_t sequence = 0;
 };
 
-/// The 2-D random numbers of the paths i, i + 1 ... for one consumer.
+/// The 2-D random numbers of the paths i, i + 1 ... for one consumer. \param index in their sequences
 template <class F>
-Vec2<UInt<F>> sample_bits(const Scene& scene, const PathColumns& path, int i, std::uint32_t pair,
-                          const SampleNumber& which = {}) {
+Vec2<UInt<F>> sample_bits_at(const Scene& scene, const PathColumns& path, int i, std::uint32_t pair,
+                             const UInt<F>& index, std::int32_t sequence) {
   using U = UInt<F>;
-  U index = load_lanes<U>(&path.index[i]), stream_lo = load_lanes<U>(&path.stream_lo[i]),
-    stream_hi = load_lanes<U>(&path.stream_hi[i]);
-  if (which.count > 1) index = index * U(std::uint32_t(which.count)) + U(std::uint32_t(which.number));
-  if (which.sequence > 0) {
-    const std::uint64_t other = hash64(std::uint64_t(which.sequence));
+  U stream_lo = load_lanes<U>(&path.stream_lo[i]), stream_hi = load_lanes<U>(&path.stream_hi[i]);
+  if (sequence > 0) {
+    const std::uint64_t other = hash64(std::uint64_t(sequence));
     stream_lo = stream_lo ^ U(std::uint32_t(other));
     stream_hi = stream_hi ^ U(std::uint32_t(other >> 32));
   }
   return sample_2d<F>(scene.sampler, stream_lo, stream_hi, index, pair);
+}
+template <class F>
+Vec2<UInt<F>> sample_bits(const Scene& scene, const PathColumns& path, int i, std::uint32_t pair,
+                          const SampleNumber& which = {}) {
+  using U = UInt<F>;
+  U index = load_lanes<U>(&path.index[i]);
+  if (which.count > 1) index = index * U(std::uint32_t(which.count)) + U(std::uint32_t(which.number));
+  return sample_bits_at<F>(scene, path, i, pair, index, which.sequence);
 }
 
 /// Starts the block's samples, each a path.

@@ -25,13 +25,15 @@ DirectLightSample<F> select(const Mask<F>& m, const DirectLightSample<F>& a, con
 
 /// The light that reaches the vertices straight from a light, by one sample of the lights: what course
 /// handouts call `sampleLights`, with the BSDF, the cosine and the weight that they leave to `Li`.
-/// \param vertex_number which of the path's \param receiver as lights see the vertex \param u_light chooses
+/// \param vertex_number which of the path's \param share of this sample among all that are added up
+/// \param receiver as lights see the vertex \param u_light chooses
 /// the light and places the point \param pass of the light sampler's passes
 template <class F>
 DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler& light_sampler,
-                                         const PathRules& rules, int vertex_number, const Vertex<F>& vertex,
-                                         const Receiver<F>& receiver, const Vec2<UInt<F>>& u_light,
-                                         std::int32_t pass) {
+                                         const PathRules& rules, int vertex_number, const F& share,
+                                         const Vertex<F>& vertex, const Receiver<F>& receiver,
+                                         const Vec2<UInt<F>>& u_light, std::int32_t pass,
+                                         const Mask<F>& lanes) {
   // Choose a light.
   const LightChoice<F> choice = light_sampler.choose<F>(receiver, u_light.x, pass);
 
@@ -39,7 +41,7 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   // (`LuminaireQueryRecord`, `pdf`), the geometry term but for the receiver's cosine.
   DirectLightSample<F> sample;
   sample.light = scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u_light.y},
-                                        mask_and(vertex.is_there, choice.pmf > F(0)), choice.facet,
+                                        mask_and(lanes, choice.pmf > F(0)), choice.facet,
                                         rules.light_samples()->technique);
 
   // Scatter it: BSDF times cosine, on the sides of the surface that agree with its shading normal.
@@ -53,16 +55,16 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
               bsdf_samples = float(rules.bsdf_samples(vertex_number));
   const Mask<F> is_alone = vertex.leaves_direct_light_to_lights(scene);
   Color<F> scattered = black<F>();
-  for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& lanes) {
+  for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& scattering) {
     // Weigh it: against the chance that a BSDF sample finds the same light.
-    F weight =
-        light_sample_weight<F>(rules, select(lanes, sample.light.pdf_solid_angle, F(1)) * F(light_samples),
-                               [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(bsdf_samples); });
+    F weight = light_sample_weight<F>(
+        rules, select(scattering, sample.light.pdf_solid_angle, F(1)) * F(light_samples),
+        [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(bsdf_samples); });
     if (rules.is_shared_only_where_glossy()) weight = select(is_alone, F(1), weight);
     const Color<F> f = bsdf.eval(wo_local, wi_local);
-    scattered = select(lanes, f * sample.light.radiance_over_pdf * (cosine * weight), scattered);
+    scattered = select(scattering, f * sample.light.radiance_over_pdf * (cosine * weight), scattered);
   });
-  if (light_samples > 1) scattered = scattered * F(1 / light_samples);
+  scattered = scattered * share;
 
   // What may hide it: shapes along the shadow segment (`V`), and the medium, which dims it.
   sample.origin = vertex.origin_of_ray(sample.light.wi);

@@ -258,10 +258,10 @@ IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& l
   std::int64_t facets = 0;
   for (std::int32_t light = 0; light < lights.count(); ++light) facets += lights.facet_count(light);
   // Where the cut of a tile holds each facet by itself, points stay better distributed without a choice among
-  // candidates than it could make them.
-  constexpr int of_many = 4;
+  // candidates than it could make them, unless lobes are narrow.
+  constexpr int several = 4;
   const bool are_all_in_cut = facets <= LightCut::most_clusters;
-  return {integrator.name, rules->with_candidates(are_all_in_cut ? 1 : of_many)};
+  return {integrator.name, rules->with_candidates(are_all_in_cut ? 1 : several, several)};
 }
 
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights) {

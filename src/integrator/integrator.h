@@ -50,7 +50,8 @@ IntegratorSettings integrator_from_name(std::string_view name);
 IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler);
 
 /// The same with what it leaves to the scene decided: candidates are 1 where a cut of the light tree
-/// (lightsampler/light_cuts.h) has room for every facet, else 4.
+/// (lightsampler/light_cuts.h) has room for every facet and surfaces are diffuse,
+/// else 4.
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights);
 
 /// Over the lights of a scene, which it may not outlive; where the integrator samples none, any.

@@ -17,38 +17,47 @@ struct LightSampleNumber {
   std::int32_t pass = 0;
 };
 
-/// The random numbers of one candidate of a light sample of the paths i, i + 1 ... All candidates of all
-/// light samples follow one another in one sequence over the samples of the pixel; each pass has its own, as
-/// every second or third point of one is badly distributed.
-template <class F>
-Vec2<UInt<F>> light_sample_bits(const Scene& scene, const PathRules& rules, const PathColumns& path, int i,
-                                const LightSampleNumber& which, int candidate) {
-  return sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::light, std::uint32_t(which.vertex)),
-                        {which.number * rules.candidates(which.vertex) + candidate,
-                         rules.light_draws(which.vertex), which.pass});
-}
-
-/// One light sample of the paths i, i + 1 ...: the one candidate, or one of several.
+/// One light sample of the paths i, i + 1 ...: one candidate, or one of several. The candidates of all light
+/// samples follow one another in one sequence over the samples of the pixel; each pass has its own, as every
+/// second or third point of one is badly distributed.
 template <class F>
 DirectLightSample<F> light_sample_of(const Scene& scene, const LightSampler& light_sampler,
                                      const PathRules& rules, const SampleBlock& block, int i,
                                      const Vertex<F>& vertex, const LightSampleNumber& which) {
+  using U = UInt<F>;
   Receiver<F> receiver = vertex.receiver(scene);
   if (which.vertex == 0 && block.has_cuts) {
     receiver.cuts = &block.cuts;
     receiver.cut = load_lanes<Int<F>>(&block.cut[i]);
   }
-  const auto candidate = [&](int k) {
-    return sample_direct_light<F>(scene, light_sampler, rules, which.vertex, vertex, receiver,
-                                  light_sample_bits<F>(scene, rules, block.path, i, which, k), which.pass);
+  const int light_samples = rules.light_count(which.vertex), few = rules.candidates(which.vertex),
+            many = rules.glossy_candidates(which.vertex);
+  Int<F> candidates(many);
+  Mask<F> is_glossy = vertex.is_there;
+  if (few != many) {
+    is_glossy = mask_not(vertex.leaves_direct_light_to_lights(scene));
+    candidates = select(is_glossy, candidates, Int<F>(few));
+  }
+  const int most = any(mask_and(vertex.is_there, is_glossy)) ? many : few;
+  const F share = F(1) / (to_float(candidates) * F(float(light_samples)));
+  const U first = (load_lanes<U>(&block.path.index[i]) * U(std::uint32_t(light_samples)) +
+                   U(std::uint32_t(which.number))) *
+                  as_uint(candidates);
+  const std::uint32_t vertex_number = std::uint32_t(which.vertex);
+  const auto candidate = [&](int k, const Mask<F>& lanes) {
+    const Vec2<U> u_light =
+        sample_bits_at<F>(scene, block.path, i, dimension::at_vertex(dimension::light, vertex_number),
+                          first + U(std::uint32_t(k)), which.pass);
+    return sample_direct_light<F>(scene, light_sampler, rules, which.vertex, share, vertex, receiver, u_light,
+                                  which.pass, lanes);
   };
-  const int candidates = rules.candidates(which.vertex);
-  if (candidates == 1) return candidate(0);
-  const std::uint32_t pair = dimension::at_vertex(dimension::selection, std::uint32_t(which.vertex));
-  ResampledLight<F> light(to_unit_float(
-      sample_bits<F>(scene, block.path, i, pair, {which.number, rules.light_count(which.vertex), which.pass})
-          .x));
-  for (int k = 0; k < candidates; ++k) light.offer(candidate(k));
+  if (most == 1) return candidate(0, vertex.is_there);
+  const Vec2<U> u_selection =
+      sample_bits<F>(scene, block.path, i, dimension::at_vertex(dimension::selection, vertex_number),
+                     {which.number, light_samples, which.pass});
+  ResampledLight<F> light(to_unit_float(u_selection.x));
+  for (int k = 0; k < most; ++k)
+    light.offer(candidate(k, mask_and(vertex.is_there, less(Int<F>(k), candidates))));
   return light.take();
 }
 

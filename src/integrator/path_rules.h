@@ -22,6 +22,7 @@ struct LightSamples {
   /// Each light sample of the first vertex is one of so many candidates, chosen by what they would add. 0: by
   /// what there is to choose from, see settled().
   int candidates = 1;
+  int glossy_candidates = 0;  ///< The same where surfaces are not diffuse; 0: as many as elsewhere.
   LightTechnique technique = LightTechnique::area;  ///< Where on the light.
 
   friend bool operator==(const LightSamples&, const LightSamples&) = default;
@@ -80,11 +81,16 @@ class PathRules {
     return changed;
   }
 
-  /// The same with so many candidates; light_samples() must not be null.
-  PathRules with_candidates(int candidates) const {
+  /// The same with so many candidates, everywhere unless `glossy` says how many where surfaces are not
+  /// diffuse; light_samples() must not be null.
+  PathRules with_candidates(int candidates, int glossy = 0) const {
     PathRules changed = *this;
-    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.candidates = candidates;
-    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.candidates = candidates;
+    const auto set = [&](LightSamples& lights) {
+      lights.candidates = candidates;
+      lights.glossy_candidates = glossy;
+    };
+    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) set(by->lights);
+    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) set(by->lights);
     return changed;
   }
   /// The same with so many light samples at the first vertex; light_samples() must not be null.
@@ -112,10 +118,14 @@ class PathRules {
     const LightSamples& lights = *light_samples();
     return vertex == 0 || lights.later_count == 0 ? lights.count : lights.later_count;
   }
-  /// Of which each of them is one.
+  /// Of which each of them is one: on diffuse surfaces, and elsewhere.
   int candidates(int vertex) const { return vertex == 0 ? light_samples()->candidates : 1; }
-  /// What is drawn of the lights' densities: of each light sample, each candidate.
-  int light_draws(int vertex) const { return light_count(vertex) * candidates(vertex); }
+  int glossy_candidates(int vertex) const {
+    const LightSamples& lights = *light_samples();
+    return vertex == 0 && lights.glossy_candidates > 0 ? lights.glossy_candidates : candidates(vertex);
+  }
+  /// What is drawn of the lights' densities where BSDF samples share in the light: each candidate.
+  int light_draws(int vertex) const { return light_count(vertex) * glossy_candidates(vertex); }
   /// Whether BSDF samples of diffuse surfaces leave direct light to light samples.
   bool is_shared_only_where_glossy() const {
     const auto* by = std::get_if<ByBoth>(&direct_light_);
@@ -124,7 +134,9 @@ class PathRules {
 
   /// The most that a sample takes of light samples, or of BSDF samples, at one vertex.
   int most_samples() const {
-    return std::max({1, bsdf_samples(0), light_samples() ? std::max(light_draws(0), light_draws(1)) : 0});
+    return std::max(
+        {1, bsdf_samples(0),
+         light_samples() ? std::max({light_draws(0), light_draws(1), light_count(0) * candidates(0)}) : 0});
   }
 
   /// The heuristic where light is found by both techniques; else null.

@@ -24,7 +24,7 @@ class PolygonLight {
     if (technique == LightTechnique::solid_angle || technique == LightTechnique::projected_solid_angle)
       by_area_ = none;
     if (technique == LightTechnique::automatic) {
-      constexpr float far = 4;  // Sides away: there it hardly matters where on the polygon.
+      constexpr float far = 1.5f;  // Sides away: there it hardly matters where on the polygon.
       by_area_ = mask_and(lanes, length_sq(fan_.apex) > F(far * far) * fan_.area);
     }
     by_cosine_ = none;
