@@ -31,13 +31,13 @@ def room(scene, half, left, right, is_closed):
 
 
 def two_blocks(scene):
-    scene.add("tall", block((-0.65, -1, -0.6), (-0.05, 0.2, 0.0), 18), WHITE)
-    scene.add("short", block((0.05, -1, 0.0), (0.65, -0.4, 0.6), -17), WHITE)
+    scene.add("tall", block((-0.65, -1, -0.65), (-0.1, 0.2, -0.1), 18), WHITE)
+    scene.add("short", block((0.05, -1, -0.35), (0.6, -0.45, 0.2), -17), WHITE)
 
 
 def box():
     scene = Scene("box", "a closed diffuse box with two blocks under one square in the ceiling",
-                  Camera((0, 0, 0.95), (0, -0.15, -1), 68))
+                  Camera((0, 0.1, 0.98), (0, -0.25, -1), 72))
     room(scene, 1, RED, GREEN, is_closed=True)
     two_blocks(scene)
     scene.add("lamp", ceiling_lamp((0, 0.995, -0.1), 0.3, 0.3), BLACK, (12, 10, 8))
@@ -58,7 +58,7 @@ def plates():
     plate tilted so that the camera sees the lamps mirrored in its middle."""
     eye = np.array([0, 2.6, 8.5])
     scene = Scene("plates", "four squares of different size and equal power over three rough metal plates, smooth to "
-                  "rough", Camera(tuple(eye), (0, 1.2, 0), 40))
+                  "rough", Camera(tuple(eye), (0, 0.8, 0), 36))
     scene.add("floor", floor(12), Diffuse((0.25, 0.25, 0.25)))
     scene.add("back", Rectangle((0, 12, -4), (12, 0, 0), (0, 12, 0)), Diffuse((0.25, 0.25, 0.25)))
     lamps = np.array([0.0, 4.2, -1.0])
@@ -83,13 +83,15 @@ def plates():
 def stand(scene, ground=SAND):
     """A floor with a few things on it, diffuse and metal by turns."""
     scene.add("floor", floor(10), ground)
+    scene.add("back", Rectangle((0, 3, -4.5), (10, 0, 0), (0, 3, 0)), SAND)
     scene.add("diffuse_block", block((-1.9, 0, -1.2), (-0.9, 1.1, -0.2), 25), BLUE)
     scene.add("metal_block", block((0.7, 0, -1.4), (1.7, 0.9, -0.4), -20), metal(0.15))
     scene.add("metal_ball", Sphere((-0.1, 0.45, 0.5), 0.45), metal(0.08))
     scene.add("diffuse_ball", Sphere((1.3, 0.35, 0.9), 0.35), RED)
 
 
-STAND_CAMERA = Camera((0, 2.6, 6.5), (0, 1.1, 0), 44)
+# Lamps are above what it sees, lest their edges in the picture be most of the variance.
+STAND_CAMERA = Camera((0, 2.1, 6.5), (0, 0.45, 0), 28)
 
 
 def mesh_light():
@@ -104,7 +106,7 @@ def mesh_light():
         flat = np.stack([far * np.cos(angle), radius * np.sin(around), -far * np.sin(angle)], -1)
         tilt = np.radians(35)
         turn = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]])
-        return flat @ turn.T + (0, 2.3, -0.3)
+        return flat @ turn.T + (0, 3.1, -0.3)
 
     scene.add("lamp", grid_mesh(ring, 50, 200), BLACK, (4, 3.4, 2.6))
     return scene
@@ -146,14 +148,14 @@ def many_lights(count, groups, corners):
     scene = Scene(f"many_lights_{count}", f"{count:,} small {shape} in {meshes} over a floor with five things",
                   STAND_CAMERA)
     stand(scene)
-    swarm(scene, count, groups, corners, (-3, 1.5, -2.5), (3, 3.5, 2))
+    swarm(scene, count, groups, corners, (-3, 2.2, -2.5), (3, 3.8, 2))
     return scene
 
 
 def glossy_floor():
     scene = Scene("glossy_floor", "1,000 small squares in 8 meshes over a floor of rough metal", STAND_CAMERA)
     stand(scene, metal(0.1))
-    swarm(scene, 1000, 8, 4, (-3, 1.5, -2.5), (3, 3.5, 2))
+    swarm(scene, 1000, 8, 4, (-3, 2.2, -2.5), (3, 3.8, 2))
     return scene
 
 
@@ -164,7 +166,7 @@ def hidden_lights():
     home = (2, 1)
     center = size * (np.array(home) + 0.5)
     scene = Scene("hidden_lights", "20 rooms with 10 lamps each, doors ajar, the camera in one of them",
-                  Camera((center[0] - 1.7, 1.6, center[1] + 1.7), (center[0] + 0.6, 1.1, center[1] - 0.6), 75))
+                  Camera((center[0] - 1.7, 1.6, center[1] + 1.7), (center[0] + 0.6, 0.4, center[1] - 0.6), 52))
     wide, deep = columns * size, rows * size
     scene.add("floor", Rectangle((wide / 2, 0, deep / 2), (wide / 2, 0, 0), (0, 0, -deep / 2)), SAND)
     scene.add("ceiling", Rectangle((wide / 2, height, deep / 2), (wide / 2, 0, 0), (0, 0, deep / 2)), WHITE)
@@ -218,19 +220,19 @@ def hidden_lights():
 def sliver_light():
     scene = Scene("sliver_light", "a lamp of 3 m by 2 mm over a floor with five things", STAND_CAMERA)
     stand(scene)
-    scene.add("lamp", ceiling_lamp((0, 2.4, -0.2), 1.5, 0.001), BLACK, (4000, 3600, 3000))
+    scene.add("lamp", ceiling_lamp((0, 2.6, -0.2), 1.5, 0.001), BLACK, (4000, 3600, 3000))
     return scene
 
 
 def wall_light():
     scene = Scene("wall_light", "a square lamp that touches a wall, and one that stands on the floor",
-                  Camera((2.2, 2.0, 5.0), (-0.2, 0.9, 0), 44))
+                  Camera((2.2, 2.3, 5.0), (-0.3, 0.8, -0.6), 40))
     scene.add("floor", floor(6), SAND)
     scene.add("wall", Rectangle((0, 3, -2), (6, 0, 0), (0, 3, 0)), WHITE)
     scene.add("block", block((-1.6, 0, -1.2), (-0.8, 0.9, -0.4), 25), BLUE)
     scene.add("ball", Sphere((0.8, 0.4, -0.6), 0.4), metal(0.15))
     scene.add("shelf_lamp", ceiling_lamp((0, 2, -1.5), 0.5, 0.5), BLACK, (6, 5, 4))
-    scene.add("standing_lamp", Rectangle((-2.4, 0.3, 0.4), (0, 0, -0.4), (0, 0.3, 0)), BLACK, (5, 5, 6))
+    scene.add("standing_lamp", Rectangle((-1.9, 0.3, 0.2), (-0.4, 0, 0), (0, 0.3, 0)), BLACK, (5, 5, 6))
     return scene
 
 
