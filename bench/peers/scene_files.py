@@ -72,7 +72,8 @@ def mitsuba_xml(scene, size_px):
     """Lights are weighted by their power; who wants them alike sets their sampling_weight after loading."""
     camera = scene.camera
     integrator = "path" if scene.is_by_paths else "direct"
-    lines = [f"<!-- {scene.about} -->", '<scene version="3.0.0">', f'\t<integrator type="{integrator}"/>',
+    lines = [f"<!-- {scene.about} -->", '<scene version="3.0.0">',
+             '\t<default name="sampler" value="multijitter"/>', f'\t<integrator type="{integrator}"/>',
              '\t<sensor type="perspective">',
              f'\t\t<transform name="to_world"><lookat origin="{numbers(camera.origin)}" '
              f'target="{numbers(camera.target)}" up="{numbers(camera.up)}"/></transform>',
@@ -80,7 +81,7 @@ def mitsuba_xml(scene, size_px):
              '\t\t<film type="hdrfilm"><string name="pixel_format" value="rgb"/>'
              '<string name="component_format" value="float32"/>'
              f'<integer name="width" value="{size_px}"/><integer name="height" value="{size_px}"/>'
-             '<rfilter type="box"/></film>', '\t\t<sampler type="multijitter"/>', "\t</sensor>"]
+             '<rfilter type="box"/></film>', '\t\t<sampler type="$sampler"/>', "\t</sensor>"]
     for thing in scene.objects:
         shape = thing.shape
         if isinstance(shape, Mesh):
