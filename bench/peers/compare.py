@@ -19,7 +19,8 @@ from scenes import SCENES
 
 BUDGETS_SPP = (16, 64)
 CURVE_SPP = (4, 16, 64)  # of the error against time
-SWEEP_SEEDS, SWEEP_FIRST_SEED = 3, 5000
+SWEEP_SEEDS, SWEEP_FIRST_SEED, SWEEP_SHRINK = 3, 5000, 2
+SWEEP_SUFFIX = "_small"
 FINALISTS = 3
 
 
@@ -32,6 +33,7 @@ def main():
         scene = SCENES[name]()
         folder = options.out / "work"
         write_scene(scene, folder, options.size)
+        write_scene(scene, folder, options.size // SWEEP_SHRINK, SWEEP_SUFFIX)
         ours = Etendue(options.etendue, cores, folder)
         peers = [PEERS[key](cores, folder) for key in options.peers]
         try:
@@ -114,7 +116,7 @@ def measure(scene, ours, peers, options):
 
 def sweep(scene, peer, budgets):
     """The best setting for each number of samples a pixel, as name and keys: one axis after the other with the fewest
-    samples, then the finalists again with more."""
+    samples, then the finalists again with more. All on a smaller picture."""
     axes = peer.axes(scene)
     chosen = {axis: next(iter(choices)) for axis, choices in axes.items()}
     tried = {}
@@ -123,7 +125,7 @@ def sweep(scene, peer, budgets):
         setting = {key: value for axis, name in names.items() for key, value in axes[axis][name].items()}
         title = ", ".join(names.values())
         seeds = range(SWEEP_FIRST_SEED, SWEEP_FIRST_SEED + SWEEP_SEEDS)
-        runs = in_turn(scene, [(peer, title, setting)], spp, seeds)[0]
+        runs = [peer.render(scene.name + SWEEP_SUFFIX, setting, seed, spp) for seed in seeds]
         variance = relative_variance(luminance([run.image for run in runs]))
         return efficiency(variance, [run.seconds for run in runs]).value, title, setting
 
@@ -145,7 +147,7 @@ def in_turn(scene, entries, spp, seeds):
     runs = [[] for _ in entries]
     for seed in seeds:
         for (renderer, _, setting), mine in zip(entries, runs):
-            mine.append(renderer.render(scene, setting, seed, spp))
+            mine.append(renderer.render(scene.name, setting, seed, spp))
     return runs
 
 

@@ -34,9 +34,9 @@ class Etendue:
         names = ("path", "path_mis") if scene.is_by_paths else ("direct_light", "light", "mis")
         return {name: ["--integrator", name] for name in names if name in known}
 
-    def render(self, scene, setting, seed, spp):
+    def render(self, name, setting, seed, spp):
         image, stats = self.folder / "image.exr", self.folder / "stats.json"
-        command = [self.program, "render", str(self.folder / f"{scene.name}.etendue.xml"), *setting, "--spp", str(spp),
+        command = [self.program, "render", str(self.folder / f"{name}.etendue.xml"), *setting, "--spp", str(spp),
                    "--seed", str(seed), "--threads", str(len(self.cores)), "--quiet", "-o", str(image), "--stats",
                    str(stats)]
         started = time.perf_counter()
@@ -66,9 +66,9 @@ class Peer:
                                         stdout=subprocess.PIPE, text=True,
                                         preexec_fn=lambda: os.sched_setaffinity(0, cores))
 
-    def render(self, scene, setting, seed, spp):
+    def render(self, name, setting, seed, spp):
         to = self.folder / f"{self.key}.npy"
-        job = {"scene": str(self.folder / f"{scene.name}.{self.key}.xml"), "setting": setting, "seed": seed,
+        job = {"scene": str(self.folder / f"{name}.{self.key}.xml"), "setting": setting, "seed": seed,
                "spp": spp, "to": str(to)}
         print(json.dumps(job), file=self.process.stdin, flush=True)
         answer = self.process.stdout.readline()
