@@ -50,7 +50,7 @@ def main():
 def read_options():
     parser = argparse.ArgumentParser(description="Measure Etendue beside other renderers.")
     parser.add_argument("--scenes", default=",".join(SCENES), help="by comma [all]")
-    parser.add_argument("--peers", default="mitsuba", help=f"by comma, of {', '.join(PEERS)} [mitsuba]")
+    parser.add_argument("--peers", default=",".join(PEERS), help=f"by comma, of {', '.join(PEERS)} [all]")
     parser.add_argument("--etendue", required=True, help="the program")
     parser.add_argument("--out", type=Path, required=True, help="folder for what is measured")
     parser.add_argument("--seeds", type=int, default=8, help="images of each renderer, 6 to 10 [8]")

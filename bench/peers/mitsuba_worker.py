@@ -4,7 +4,6 @@
 "wall_seconds": by the clock}. Loading and the first render of a setting, which compiles, are not counted.
 """
 import json
-import os
 import sys
 import time
 
@@ -14,7 +13,7 @@ import drjit as dr
 import mitsuba as mi
 
 mi.set_variant("llvm_ad_rgb")
-dr.set_thread_count(len(os.sched_getaffinity(0)))
+dr.set_thread_count(int(sys.argv[1]))
 
 
 def load(path, setting):

@@ -60,15 +60,15 @@ class Etendue:
 class Peer:
     """A worker process that keeps its scene and its compiled code. A setting is what the worker takes."""
 
-    def __init__(self, cores, folder, worker):
+    def __init__(self, cores, folder):
         self.cores, self.folder = cores, folder
-        self.process = subprocess.Popen([sys.executable, str(HERE / worker)], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, text=True,
+        self.process = subprocess.Popen([sys.executable, str(HERE / f"{self.key}_worker.py"), str(len(cores))],
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                                         preexec_fn=lambda: os.sched_setaffinity(0, cores))
 
     def render(self, name, setting, seed, spp):
         to = self.folder / f"{self.key}.npy"
-        job = {"scene": str(self.folder / f"{name}.{self.key}.xml"), "setting": setting, "seed": seed,
+        job = {"scene": str(self.folder / f"{name}.{self.file_ending}"), "setting": setting, "seed": seed,
                "spp": spp, "to": str(to)}
         print(json.dumps(job), file=self.process.stdin, flush=True)
         answer = self.process.stdout.readline()
@@ -82,10 +82,7 @@ class Peer:
 
 
 class Mitsuba(Peer):
-    title, key = "Mitsuba 3", "mitsuba"
-
-    def __init__(self, cores, folder):
-        super().__init__(cores, folder, "mitsuba_worker.py")
+    title, key, file_ending = "Mitsuba 3", "mitsuba", "mitsuba.xml"
 
     def axes(self, scene):
         """What is tried, axis by axis, the first of each to start with."""
@@ -103,7 +100,16 @@ class Mitsuba(Peer):
         return axes
 
 
-PEERS = {"mitsuba": Mitsuba}
+class Cycles(Peer):
+    title, key, file_ending = "Cycles", "cycles", "cycles"
+
+    def axes(self, scene):
+        return {"lights": {"light tree": {"light_tree": True}, "no light tree": {"light_tree": False}},
+                "sampler": {"Sobol": {"sampling_pattern": "TABULATED_SOBOL"},
+                            "blue noise": {"sampling_pattern": "BLUE_NOISE"}}}
+
+
+PEERS = {peer.key: peer for peer in (Mitsuba, Cycles)}
 
 
 def read_exr(path):

@@ -11,7 +11,7 @@ the table, the plots and the images into docs/performance.md and docs/images/pee
 machine must have nothing else to do.
 
   --scenes A,B     only these; the others keep what was measured before
-  --peers A,B      of mitsuba [all]
+  --peers A,B      of mitsuba, cycles [all]
   --etendue FILE   the program [build/release/etendue]
   --seeds N        images of each renderer, 6 to 10 [8]
   --cores N,M      one thread on each; processor time with one core, time by the clock with more [the last core]

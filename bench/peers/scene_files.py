@@ -1,11 +1,14 @@
-"""Writes a scene as a file of Etendue and as one of Mitsuba 3, with the meshes beside them, which both read."""
+"""Writes a scene as a file of each renderer, with the meshes beside them."""
+import pickle
+
 import numpy as np
 
 from shapes import Diffuse, Mesh, Rectangle, Sphere
 
 
 def write_scene(scene, folder, size_px, suffix=""):
-    """Writes NAME.etendue.xml and NAME.mitsuba.xml, and the meshes as PLY; returns the paths of the two."""
+    """Writes NAME.etendue.xml, NAME.mitsuba.xml, and NAME.cycles for its worker, and the meshes as PLY; returns the
+    paths of the scenes."""
     folder.mkdir(parents=True, exist_ok=True)
     for thing in scene.objects:
         if isinstance(thing.shape, Mesh):
@@ -14,6 +17,8 @@ def write_scene(scene, folder, size_px, suffix=""):
     for renderer, text in (("etendue", etendue_xml), ("mitsuba", mitsuba_xml)):
         paths.append(folder / f"{scene.name}{suffix}.{renderer}.xml")
         paths[-1].write_text(text(scene, size_px))
+    paths.append(folder / f"{scene.name}{suffix}.cycles")
+    paths[-1].write_bytes(pickle.dumps((scene, size_px)))
     return paths
 
 
