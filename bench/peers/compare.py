@@ -53,7 +53,7 @@ def read_options():
     parser.add_argument("--peers", default=",".join(PEERS), help=f"by comma, of {', '.join(PEERS)} [all]")
     parser.add_argument("--etendue", required=True, help="the program")
     parser.add_argument("--out", type=Path, required=True, help="folder for what is measured")
-    parser.add_argument("--seeds", type=int, default=8, help="images of each renderer, 6 to 10 [8]")
+    parser.add_argument("--seeds", type=int, default=6, help="images of each renderer, 6 to 10 [6]")
     parser.add_argument("--size", type=int, default=512, help="pixels each way [512]")
     parser.add_argument("--cores", default=str(max(os.sched_getaffinity(0))), help="to run on, by comma [the last]")
     parser.add_argument("--quick", action="store_true", help="128 x 128 pixels, 6 seeds, 16 samples a pixel")

@@ -102,7 +102,6 @@ def round_mesh(sphere):
 
 def material(thing):
     made = bpy.data.materials.new(thing.name)
-    made.use_nodes = True
     nodes, links = made.node_tree.nodes, made.node_tree.links
     nodes.clear()
     output = nodes.new("ShaderNodeOutputMaterial")

@@ -13,7 +13,7 @@ machine must have nothing else to do.
   --scenes A,B     only these; the others keep what was measured before
   --peers A,B      of mitsuba, cycles [all]
   --etendue FILE   the program [build/release/etendue]
-  --seeds N        images of each renderer, 6 to 10 [8]
+  --seeds N        images of each renderer, 6 to 10 [6]
   --cores N,M      one thread on each; processor time with one core, time by the clock with more [the last core]
   --quick          small and coarse, to see that it works; documentation stays as it is
 END
