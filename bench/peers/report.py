@@ -17,7 +17,7 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 BEGIN, END = "<!-- bench/peers/run.sh writes from here -->", "<!-- to here -->"
-CROP_PX = 160
+CROP_PX, GAP_PX = 192, 4
 COLOURS = {"Etendue": "#c1440e", "Mitsuba 3": "#1f5fa8", "Cycles": "#3a7d34", "LuxCore": "#7a4fa3"}
 
 
@@ -116,7 +116,7 @@ def figure(value):
 
 
 def draw_curves(results, path):
-    plt.rcParams.update({"svg.hashsalt": "peers", "font.size": 8, "axes.grid": True, "grid.alpha": 0.3})
+    plt.rcParams.update({"svg.hashsalt": "peers", "svg.fonttype": "none", "font.size": 8, "axes.grid": True, "grid.alpha": 0.3})
     columns = 4
     shape = (-(-len(results) // columns), columns)
     drawing, axes = plt.subplots(*shape, figsize=(11, 2.4 * shape[0]), squeeze=False, layout="constrained")
@@ -136,7 +136,8 @@ def draw_curves(results, path):
 def draw_images(results, measured, path):
     """A row for each scene: the middle of each renderer's first image at the fewest samples."""
     names = titles(results)
-    sheet = np.full((len(results) * (CROP_PX + 4), len(names) * (CROP_PX + 4), 3), 255, np.uint8)
+    step = CROP_PX + GAP_PX
+    sheet = np.full((len(results) * step - GAP_PX, len(names) * step - GAP_PX, 3), 255, np.uint8)
     for i, result in enumerate(results):
         rows = next(iter(result["budgets"].values()))
         images = np.load(measured / f"{result['scene']}.npz")
@@ -148,9 +149,9 @@ def draw_images(results, measured, path):
             top, left = ((length - CROP_PX) // 2 for length in image.shape[:2])
             crop = np.clip(image[top:top + CROP_PX, left:left + CROP_PX] / white, 0, 1)
             coded = np.where(crop <= 0.0031308, 12.92 * crop, 1.055 * crop ** (1 / 2.4) - 0.055)
-            y, x = i * (CROP_PX + 4), names.index(renderer) * (CROP_PX + 4)
+            y, x = i * step, names.index(renderer) * step
             sheet[y:y + CROP_PX, x:x + CROP_PX] = np.rint(255 * coded).astype(np.uint8)
-    Image.fromarray(sheet).save(path, optimize=True)
+    Image.fromarray(sheet).quantize(256).save(path, optimize=True)  # noise is dear in full colour
 
 
 if __name__ == "__main__":
