@@ -3,6 +3,9 @@
 #include "geometry/mesh_builder.h"
 #include "geometry/mesh_text.h"
 #include "scenefile/file_format.h"
+#include "scenefile/obj_cursor.h"
+#include "scenefile/text_file.h"
+#include "scenefile/whole_file.h"
 
 #include <algorithm>
 #include <array>
@@ -25,84 +28,18 @@ struct Face {
   std::size_t first_corner;
 };
 
+/// Faces of one material, up to those of the next run.
+struct MaterialRun {
+  std::string material;  ///< Empty before the first usemtl.
+  std::size_t first_face;
+};
+
 /// The statements of a file.
 struct Statements : ObjectParts {
   std::vector<Face> faces;
   std::vector<Corner> corners;
-  std::set<std::string_view> materials;  ///< By their names.
-  std::size_t first_material = 0;        ///< Where the first is given.
-};
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-
-/// Walks the text by tokens. A backslash at a line's end joins it with the next line.
-class Cursor {
- public:
-  Cursor(const std::string& text, std::size_t offset)
-      : begin_(text.data()), at_(begin_ + offset), end_(begin_ + text.size()) {}
-
-  bool at_end() const { return at_ == end_; }
-  bool at_statement_end() const { return at_ == end_ || is_line_end(*at_) || *at_ == '#'; }
-  bool at_token_end() const {
-    return at_ == end_ || is_blank(*at_) || is_line_end(*at_) || continuation() > 0;
-  }
-  std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
-  const char* at() const { return at_; }
-  const char* end() const { return end_; }
-  void move_to(const char* at) { at_ = at; }
-
-  void skip_blanks() {
-    for (;;) {
-      if (at_ != end_ && is_blank(*at_))
-        ++at_;
-      else if (const auto joined = continuation())
-        at_ += joined;
-      else
-        return;
-    }
-  }
-
-  /// Comments and statements that nobody reads are not continued: a path may end in a backslash.
-  void skip_line() {
-    while (at_ != end_ && !is_line_end(*at_)) ++at_;
-    if (at_ != end_) ++at_;
-  }
-
-  /// True, and past it, where the next token is `word`.
-  bool accept(std::string_view word) {
-    if (!std::string_view(at_, static_cast<std::size_t>(end_ - at_)).starts_with(word)) return false;
-    const auto before = at_;
-    at_ += word.size();
-    if (at_token_end()) return true;
-    at_ = before;
-    return false;
-  }
-
-  /// True, and past it, where the next character is `c`.
-  bool accept(char c) {
-    if (at_ == end_ || *at_ != c) return false;
-    ++at_;
-    return true;
-  }
-
-  std::string_view take_token() {
-    const auto first = at_;
-    while (!at_token_end()) ++at_;
-    return {first, static_cast<std::size_t>(at_ - first)};
-  }
-
- private:
-  std::ptrdiff_t continuation() const {
-    if (at_ == end_ || *at_ != '\\' || end_ - at_ < 2) return 0;
-    if (at_[1] == '\n') return 2;
-    if (at_[1] != '\r') return 0;
-    return end_ - at_ > 2 && at_[2] == '\n' ? 3 : 2;
-  }
-
-  const char* begin_;
-  const char* at_;
-  const char* end_;
+  std::vector<MaterialRun> runs{{{}, 0}};
+  std::size_t first_material = 0;  ///< Where the first is given; 0 where none is.
 };
 
 class Parser {
@@ -190,9 +127,9 @@ class Parser {
   }
 
   void read_material(std::size_t start) {
+    if (read_.runs.size() == 1) read_.first_material = start;
     cursor_.skip_blanks();
-    if (read_.materials.empty()) read_.first_material = start;
-    read_.materials.insert(cursor_.take_token());
+    read_.runs.push_back({as_utf8(cursor_.take_rest()), read_.faces.size()});
   }
 
   void read_normal() { read_.normals.push_back(read_numbers("normal", read_.normals.size(), 3)); }
@@ -224,7 +161,7 @@ class Parser {
   }
 
   [[noreturn]] void fail_at_corner(std::size_t corner_start) const {
-    const auto token = Cursor(source_->text, corner_start).take_token();
+    const auto token = ObjCursor(source_->text, corner_start).take_token();
     fail(corner_start, token.size(), fmt::format("{} is not a face vertex", quoted(token)),
          "expected v, v/vt, v//vn or v/vt/vn with whole numbers");
   }
@@ -249,7 +186,7 @@ class Parser {
   }
 
   std::shared_ptr<const SourceFile> source_;
-  Cursor cursor_;
+  ObjCursor cursor_;
   Statements read_;
 };
 
@@ -263,14 +200,16 @@ class Assembler {
       has_normals_ |= corner.normal != none;
     }
     for (std::size_t f = 0; f < read_.faces.size(); ++f) check_face(f);
+    for (std::size_t r = 1; r < read_.runs.size(); ++r) materials_.insert(read_.runs[r].material);
   }
 
-  Mesh build(const Transform& world_from_object) const {
-    const auto fail_at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
-      return error(read_.faces[face].offset, problem, hint);
+  Mesh build(const Transform& world_from_object, const std::optional<std::string>& usemtl) const {
+    const std::vector<std::size_t> faces = faces_of(usemtl);
+    const auto fail_at_face = [&](std::size_t index, std::string_view problem, std::string_view hint) {
+      return error(read_.faces[faces[index]].offset, problem, hint);
     };
     const auto fail_at_position = [this](std::size_t index, std::string_view problem, std::string_view hint) {
-      Cursor cursor = find_statement("v", index);
+      ObjCursor cursor = find_statement("v", index);
       cursor.accept("v");
       cursor.skip_blanks();
       return error(cursor.offset(), fmt::format("vertex {}: {}", index + 1, problem), hint);
@@ -281,18 +220,19 @@ class Assembler {
     };
     MeshBuilder builder(source_->path, read_, world_from_object, has_uvs_, has_normals_,
                         {fail_at_face, fail_at_position, fail_at_normal});
-    builder.reserve_triangles(read_.corners.size() - 2 * read_.faces.size());
-    for (std::size_t f = 0; f < read_.faces.size(); ++f)
-      builder.add_face(
-          f, std::span(read_.corners).subspan(first_corner(f), first_corner(f + 1) - first_corner(f)));
+    std::size_t corner_count = 0;
+    for (const std::size_t f : faces) corner_count += corners_of(f).size();
+    builder.reserve_triangles(corner_count - 2 * faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i) builder.add_face(i, corners_of(faces[i]));
     Mesh mesh = std::move(builder).finish();
-    mesh.materials = read_.materials.size();
+    mesh.materials = materials_.size();
     if (mesh.materials > 0)
       mesh.materials_passed_over =
           error(
               read_.first_material, "the materials of this file are passed over",
-              "all of the mesh has the bsdf and emitter that the scene file gives it; a mesh without bsdf is "
-              "diffuse grey")
+              "all of the mesh has the bsdf and emitter that the scene file gives it (a mesh without bsdf is "
+              "diffuse grey); <boolean name=\"materials\" value=\"true\"/> in the mesh takes those of the "
+              "file")
               .what();
     return mesh;
   }
@@ -305,16 +245,34 @@ class Assembler {
   }
 
   /// Number `index`, from 0, of the statements that begin with `word`; no place is kept for each.
-  Cursor find_statement(std::string_view word, std::size_t index) const {
-    for (Cursor cursor(source_->text, 0);; cursor.skip_line()) {
+  ObjCursor find_statement(std::string_view word, std::size_t index) const {
+    for (ObjCursor cursor(source_->text, 0);; cursor.skip_line()) {
       cursor.skip_blanks();
-      Cursor inside = cursor;
+      ObjCursor inside = cursor;
       if (!inside.accept(word)) continue;
       if (index-- == 0) return cursor;
       // Past lines that continue it.
       for (inside.skip_blanks(); !inside.at_statement_end(); inside.skip_blanks()) inside.take_token();
       cursor = inside;
     }
+  }
+
+  /// By their numbers. Throws where there is none.
+  std::vector<std::size_t> faces_of(const std::optional<std::string>& usemtl) const {
+    std::vector<std::size_t> faces;
+    for (std::size_t r = 0; r < read_.runs.size(); ++r) {
+      if (usemtl && read_.runs[r].material != *usemtl) continue;
+      const std::size_t end = r + 1 < read_.runs.size() ? read_.runs[r + 1].first_face : read_.faces.size();
+      for (std::size_t f = read_.runs[r].first_face; f < end; ++f) faces.push_back(f);
+    }
+    if (faces.empty())
+      throw InputError(whole_file(*source_), fmt::format("no face has the material '{}'", *usemtl),
+                       known_names(*usemtl, {materials_.begin(), materials_.end()}));
+    return faces;
+  }
+
+  std::span<const Corner> corners_of(std::size_t face) const {
+    return std::span(read_.corners).subspan(first_corner(face), first_corner(face + 1) - first_corner(face));
   }
 
   std::size_t first_corner(std::size_t face) const {
@@ -333,7 +291,7 @@ class Assembler {
   void check_range(std::size_t face, std::size_t corner, std::uint32_t index, std::size_t count,
                    std::string_view statement) const {
     if (index == none || index < count) return;
-    Cursor cursor(source_->text, read_.faces[face].offset);
+    ObjCursor cursor(source_->text, read_.faces[face].offset);
     cursor.take_token();
     for (std::size_t k = read_.faces[face].first_corner; k < corner; ++k) {
       cursor.skip_blanks();
@@ -348,13 +306,14 @@ class Assembler {
 
   std::shared_ptr<const SourceFile> source_;
   Statements read_;
+  std::set<std::string> materials_;  ///< That are named, with faces or without.
   bool has_uvs_ = false, has_normals_ = false;
 };
 
 }  // namespace
 
 MeshFile read_obj_file(const std::filesystem::path& file) {
-  const auto source = read_mesh_file(file, "an OBJ mesh");
+  const auto source = read_whole_file(file, "an OBJ mesh");
   if (source->text.empty())
     throw InputError(Location{source}, "the file is empty", "expected an OBJ mesh: v and f statements");
   if (const std::string_view format = format_of_content(source->text);
@@ -366,11 +325,13 @@ MeshFile read_obj_file(const std::filesystem::path& file) {
     throw InputError(Location{source}, "no face",
                      "expected an OBJ mesh with f statements; points and lines alone cannot be rendered");
   return [all = std::make_shared<const Assembler>(source, std::move(read))](
-             const Transform& world_from_object) { return all->build(world_from_object); };
+             const Transform& world_from_object, const std::optional<std::string>& usemtl) {
+    return all->build(world_from_object, usemtl);
+  };
 }
 
 Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_object) {
-  return read_obj_file(file)(world_from_object);
+  return read_obj_file(file)(world_from_object, {});
 }
 
 }  // namespace etendue

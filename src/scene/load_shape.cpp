@@ -24,7 +24,10 @@ const Plugin obj_plugin{
     "shape",
     "obj",
     "A triangle mesh from a Wavefront OBJ file; written as <mesh type=\"obj\"> or <shape type=\"obj\">.",
-    {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
+    {{"filename", Type::text, "", "", "The file, relative to the scene file", true},
+     to_world,
+     {"materials", Type::boolean, "false", "", "With the materials of the MTL files that it names"},
+     {"usemtl", Type::text, "", "", "Only the faces of this material"}},
     surface_children};
 const Plugin ply_plugin{
     "shape",
@@ -145,12 +148,14 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const bool is_obj = object.type == obj_plugin.name;
     const Parameters parameters(object, is_obj ? obj_plugin : ply_plugin, unread);
     const std::filesystem::path file = existing_file(parameters, "filename", directory, "a mesh file");
-    Mesh mesh =
-        meshes.read(object, file, world_from_object(parameters), is_obj ? read_obj_file : read_ply_file);
+    std::optional<std::string> usemtl;
+    if (is_obj && parameters.is_stated("usemtl")) usemtl = parameters.text("usemtl");
+    Mesh mesh = meshes.read(object, file, world_from_object(parameters), usemtl,
+                            is_obj ? read_obj_file : read_ply_file);
     const std::string name = label(object, file.stem().string());
     const bool has_bsdf = std::any_of(object.children.begin(), object.children.end(), is_bsdf);
     // Of a single material nothing is lost where the scene file has its own.
-    if (mesh.materials > (has_bsdf ? 1 : 0)) warnings.push_back(mesh.materials_passed_over);
+    if (!usemtl && mesh.materials > (has_bsdf ? 1 : 0)) warnings.push_back(mesh.materials_passed_over);
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(
