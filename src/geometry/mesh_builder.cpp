@@ -2,6 +2,7 @@
 
 #include "base/reach.h"
 #include "geometry/mesh_text.h"
+#include "geometry/rounded_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,10 @@ MeshBuilder::MeshBuilder(std::string name, const ObjectParts& parts, const Trans
       errors_(std::move(errors)),
       vertices_(parts_.positions.size()) {
   mesh_.name = std::move(name);
+  if (const std::string rounding = float_rounding_in_file(parts.positions); !rounding.empty())
+    mesh_.warnings.push_back(fmt::format(
+        "{}: {}\nexport the object where it is near the origin, and put it in its place by toWorld",
+        mesh_.name, rounding));
   mesh_.positions.reserve(parts_.positions.size());
   for (std::size_t i = 0; i < parts_.positions.size(); ++i) {
     const Vec3f& p = parts_.positions[i];
@@ -82,6 +87,7 @@ MeshBuilder::MeshBuilder(std::string name, const ObjectParts& parts, const Trans
 }
 
 void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {
+  if (!first_face_) first_face_ = face;
   if (c.size() == 3) return add_triangle(face, {c[0], c[1], c[2]});
   polygon_.clear();
   for (const Corner& corner : c) polygon_.push_back(to_double(parts_.positions[corner.position]));
@@ -95,7 +101,7 @@ void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {
 
 Mesh MeshBuilder::finish() && {
   if (mesh_.indices.empty())
-    throw errors_.at_face(0, "no triangle has an area",
+    throw errors_.at_face(first_face_.value_or(0), "no triangle has an area",
                           "the mesh, or the transform it is given, is flat; check its scale");
   warn(crossing_, "this polygon crosses itself, or is folded", "{} polygons cross themselves, or are folded",
        "it has no inside to fill with triangles, and gets a fan from its first corner; cut it in two");
