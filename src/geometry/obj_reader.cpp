@@ -190,6 +190,53 @@ class Parser {
   Statements read_;
 };
 
+/// Numbers anew, from 0 and in the order of their first use, some of what a file lists.
+class Numbering {
+ public:
+  explicit Numbering(std::size_t count_in_file) : number_(count_in_file, none) {}
+  std::uint32_t number(std::uint32_t in_file) {
+    if (in_file == none) return none;
+    if (number_[in_file] == none) {
+      number_[in_file] = static_cast<std::uint32_t>(in_file_.size());
+      in_file_.push_back(in_file);
+    }
+    return number_[in_file];
+  }
+  std::size_t in_file(std::size_t number) const { return in_file_[number]; }
+
+  template <class T>
+  std::vector<T> taken_from(const std::vector<T>& all) const {
+    std::vector<T> taken;
+    taken.reserve(in_file_.size());
+    for (const std::uint32_t i : in_file_) taken.push_back(all[i]);
+    return taken;
+  }
+
+ private:
+  std::vector<std::uint32_t> number_, in_file_;
+};
+
+struct FaceRange {
+  std::size_t begin, end;
+};
+
+/// What some faces use of a file.
+struct UsedParts {
+  Numbering positions, uvs, normals;
+  ObjectParts parts;
+
+  explicit UsedParts(const ObjectParts& all)
+      : positions(all.positions.size()), uvs(all.uvs.size()), normals(all.normals.size()) {}
+  Corner number(const Corner& corner) {
+    return {positions.number(corner.position), uvs.number(corner.uv), normals.number(corner.normal)};
+  }
+  void take(const ObjectParts& all) {
+    parts.positions = positions.taken_from(all.positions);
+    parts.uvs = uvs.taken_from(all.uvs);
+    parts.normals = normals.taken_from(all.normals);
+  }
+};
+
 /// Puts the faces together, once it is known what the file has.
 class Assembler {
  public:
@@ -204,26 +251,44 @@ class Assembler {
   }
 
   Mesh build(const Transform& world_from_object, const std::optional<std::string>& usemtl) const {
-    const std::vector<std::size_t> faces = faces_of(usemtl);
-    const auto fail_at_face = [&](std::size_t index, std::string_view problem, std::string_view hint) {
-      return error(read_.faces[faces[index]].offset, problem, hint);
+    const std::vector<FaceRange> ranges = ranges_of(usemtl);
+    // Of a part of the file, what the other parts use is left alone.
+    std::optional<UsedParts> used;
+    if (usemtl) used = parts_used_by(ranges);
+    const auto fail_at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
+      return error(read_.faces[face].offset, problem, hint);
     };
-    const auto fail_at_position = [this](std::size_t index, std::string_view problem, std::string_view hint) {
+    const auto fail_at_position = [&](std::size_t index, std::string_view problem, std::string_view hint) {
+      if (used) index = used->positions.in_file(index);
       ObjCursor cursor = find_statement("v", index);
       cursor.accept("v");
       cursor.skip_blanks();
       return error(cursor.offset(), fmt::format("vertex {}: {}", index + 1, problem), hint);
     };
-    const auto fail_at_normal = [this](std::size_t index, std::string_view problem, std::string_view hint) {
+    const auto fail_at_normal = [&](std::size_t index, std::string_view problem, std::string_view hint) {
+      if (used) index = used->normals.in_file(index);
       return error(find_statement("vn", index).offset(), fmt::format("normal {} {}", index + 1, problem),
                    hint);
     };
-    MeshBuilder builder(source_->path, read_, world_from_object, has_uvs_, has_normals_,
+    const ObjectParts& whole = read_;
+    const ObjectParts& parts = used ? used->parts : whole;
+    MeshBuilder builder(source_->path, parts, world_from_object, has_uvs_, has_normals_,
                         {fail_at_face, fail_at_position, fail_at_normal});
-    std::size_t corner_count = 0;
-    for (const std::size_t f : faces) corner_count += corners_of(f).size();
-    builder.reserve_triangles(corner_count - 2 * faces.size());
-    for (std::size_t i = 0; i < faces.size(); ++i) builder.add_face(i, corners_of(faces[i]));
+    std::size_t triangles = 0;
+    for (const FaceRange& range : ranges)
+      triangles += first_corner(range.end) - first_corner(range.begin) - 2 * (range.end - range.begin);
+    builder.reserve_triangles(triangles);
+    std::vector<Corner> renumbered;
+    for (const FaceRange& range : ranges)
+      for (std::size_t f = range.begin; f < range.end; ++f) {
+        std::span<const Corner> corners = corners_of(f);
+        if (used) {
+          renumbered.clear();
+          for (const Corner& corner : corners) renumbered.push_back(used->number(corner));
+          corners = renumbered;
+        }
+        builder.add_face(f, corners);
+      }
     Mesh mesh = std::move(builder).finish();
     mesh.materials = materials_.size();
     if (mesh.materials > 0)
@@ -257,18 +322,28 @@ class Assembler {
     }
   }
 
-  /// By their numbers. Throws where there is none.
-  std::vector<std::size_t> faces_of(const std::optional<std::string>& usemtl) const {
-    std::vector<std::size_t> faces;
+  /// Throws where there is none.
+  std::vector<FaceRange> ranges_of(const std::optional<std::string>& usemtl) const {
+    std::vector<FaceRange> ranges;
     for (std::size_t r = 0; r < read_.runs.size(); ++r) {
       if (usemtl && read_.runs[r].material != *usemtl) continue;
-      const std::size_t end = r + 1 < read_.runs.size() ? read_.runs[r + 1].first_face : read_.faces.size();
-      for (std::size_t f = read_.runs[r].first_face; f < end; ++f) faces.push_back(f);
+      const std::size_t begin = read_.runs[r].first_face,
+                        end = r + 1 < read_.runs.size() ? read_.runs[r + 1].first_face : read_.faces.size();
+      if (begin < end) ranges.push_back({begin, end});
     }
-    if (faces.empty())
+    if (ranges.empty())
       throw InputError(whole_file(*source_), fmt::format("no face has the material '{}'", *usemtl),
                        known_names(*usemtl, {materials_.begin(), materials_.end()}));
-    return faces;
+    return ranges;
+  }
+
+  UsedParts parts_used_by(const std::vector<FaceRange>& ranges) const {
+    UsedParts used(read_);
+    for (const FaceRange& range : ranges)
+      for (std::size_t k = first_corner(range.begin); k < first_corner(range.end); ++k)
+        used.number(read_.corners[k]);
+    used.take(read_);
+    return used;
   }
 
   std::span<const Corner> corners_of(std::size_t face) const {

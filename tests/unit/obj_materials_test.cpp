@@ -1,12 +1,14 @@
 // Meshes with the materials of their files: from the text to the scene's tables.
 #include "scenefile/obj_materials.h"
 
+#include "geometry/obj_reader.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
 #include "scenefile/scene_files.h"
 #include "support/error_of.h"
 #include "support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -132,6 +134,44 @@ TEST_F(ObjMaterials, FaultsOfAPartPointAtItsOwnFaces) {
   write("m/room.obj",
         "mtllib b.mtl\n" + corners + "f 1 2 3\nusemtl wall\nf 1 1 2\nf 1 2 3\nusemtl none\nf 3 3 1\n");
   EXPECT_THAT(test::error_of([&] { load(""); }), HasSubstr("room.obj:12:1: no triangle has an area"));
+}
+
+TEST_F(ObjMaterials, PlacesInMessagesAreThoseOfTheFile) {
+  write("m/room.obj", "mtllib b.mtl\n" + corners +
+                          "v 1e39 0 0\nv 2 0 0\nvn 0 0 1\nvn 0 0 0\n"
+                          "usemtl wall\nf 1 2 3\nusemtl none\nf 2//1 3//1 5//2\nusemtl the lamp\nf 7 6 1\n");
+  const auto error_with = [&](const std::string& material) {
+    return test::error_of([&] { load("", "<string name='usemtl' value='" + material + "'/>"); });
+  };
+  EXPECT_EQ(error_with("wall"), "");
+  EXPECT_THAT(error_with("none"), HasSubstr("room.obj:10:1: normal 2 "));
+  EXPECT_THAT(error_with("the lamp"), HasSubstr("room.obj:7:3: vertex 6: "));
+}
+
+TEST_F(ObjMaterials, PartsTogetherAreTheWhole) {
+  std::string text = "mtllib b.mtl\n";
+  for (int i = 0; i < 30; ++i)
+    text += fmt::format("v {} {} {}\nvt {} .5\nvn 0 {} 1\n", i % 7, i % 5, i % 3, .01 * i, .02 * i);
+  for (int i = 1; i <= 28; ++i)
+    text += fmt::format("usemtl m{0}\nf {1}/{2}/{1} {2}/{1}/{3} {3}/{3}/{2}\n", i % 3, i, i + 1, i + 2);
+  write("m/room.obj", text);
+  const MeshFile file = read_obj_file(folder_.path() / "m/room.obj");
+  const auto triangles_of = [&](const std::optional<std::string>& usemtl) {
+    const Mesh mesh = file(translation({1, 2, 3}), usemtl);
+    std::vector<std::string> triangles;
+    for (std::size_t k = 0; k < mesh.indices.size(); ++k) {
+      const std::size_t v = mesh.indices[k];
+      const Vec3f &p = mesh.positions[v], &n = mesh.normals[v];
+      if (k % 3 == 0) triangles.emplace_back();
+      triangles.back() +=
+          fmt::format("{} {} {} {} {} {}, ", p.x, p.y, p.z, n.y, mesh.uvs[v].x, mesh.uvs[v].y);
+    }
+    return triangles;
+  };
+  std::vector<std::string> parts;
+  for (const char* material : {"m0", "m1", "m2"})
+    for (const std::string& triangle : triangles_of(material)) parts.push_back(triangle);
+  EXPECT_THAT(parts, testing::UnorderedElementsAreArray(triangles_of(std::nullopt)));
 }
 
 TEST_F(ObjMaterials, KeysOfTheWrongTypeAreRefusedAsEver) {
