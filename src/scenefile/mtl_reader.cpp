@@ -70,6 +70,11 @@ class Remarks {
   std::vector<Remark> all_;
 };
 
+constexpr std::string_view take_it_out =
+    "take such a material out of the MTL file, and its faces have the bsdf that stands in the mesh; or give "
+    "each "
+    "material a mesh of its own, by 'usemtl'";
+
 /// The options of a map, by the number of words behind each at most; fewer are numbers.
 struct MapOption {
   std::string_view name;
@@ -192,7 +197,7 @@ class Reader {
     current_->illum = parse_integer(words.text, words.where);
     if (current_->illum > 2)
       remarks_.add(words.where, "mirrors and glass of an illum above 2 are rendered as Kd and Ks alone",
-                   "give such faces a mesh and a bsdf of their own in the scene, by 'usemtl'");
+                   take_it_out);
   }
 
   /// \param opaque the value that lets nothing through \param sign of what is more than that
@@ -201,8 +206,7 @@ class Reader {
     cursor_.accept("-halo");
     const Words words = take_rest();
     if (sign * parse_real(words.text, words.where) < sign * opaque)
-      remarks_.add(words.where, "what lets light through is rendered opaque",
-                   "give such faces a mesh and a bsdf of their own in the scene, by 'usemtl'");
+      remarks_.add(words.where, "what lets light through is rendered opaque", take_it_out);
   }
 
   void read_texture() {
