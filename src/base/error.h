@@ -42,6 +42,14 @@ class InputError : public std::runtime_error {
       : std::runtime_error(format_message(where, problem, hint)) {}
 };
 
+/// A place that floats do not hold, or places that they do not tell apart. Moved nearer to the origin they
+/// may do.
+class PlaceError : public InputError {
+ public:
+  using InputError::InputError;
+  explicit PlaceError(const InputError& error) : InputError(error) {}
+};
+
 /// "known: a, b, c", all of them, nearest to `wrong` first (edit distance, then alphabet). Where the
 /// nearest may be what was meant, "did you mean 'a'?" comes before.
 std::string known_names(std::string_view wrong, std::vector<std::string> known);

@@ -28,6 +28,9 @@ struct Vec2 {
 using Vec3f = Vec3<float>;
 using Vec2f = Vec2<float>;
 
+inline Vec3f narrow(const Vec3<double>& v) { return {float(v.x), float(v.y), float(v.z)}; }
+inline Vec3<double> widen(const Vec3f& v) { return {v.x, v.y, v.z}; }
+
 template <class T>
 T dot(const Vec3<T>& a, const Vec3<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;

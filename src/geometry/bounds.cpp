@@ -31,6 +31,17 @@ Box box_of(const Sphere& sphere) {
   return box_about(sphere.center, {sphere.radius, sphere.radius, sphere.radius});
 }
 
+Box box_of(const Geometry& geometry, std::int32_t id) {
+  const auto at = std::size_t(id);
+  if (geometry.sphere[at] >= 0) return box_of(geometry.spheres[std::size_t(geometry.sphere[at])]);
+  if (geometry.disk[at] >= 0) return box_of(geometry.disks[std::size_t(geometry.disk[at])]);
+  Box box;
+  const std::size_t begin = 3 * std::size_t(geometry.first_triangle[at]),
+                    end = begin + 3 * std::size_t(geometry.triangles[at]);
+  for (std::size_t k = begin; k < end; ++k) box.include(geometry.positions[std::size_t(geometry.indices[k])]);
+  return box;
+}
+
 Sphere bounding_sphere(const Geometry& geometry) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};

@@ -12,5 +12,6 @@ Sphere bounding_sphere(const Geometry& geometry);
 
 Box box_of(const Disk& disk);  ///< Rounded outwards, like the next.
 Box box_of(const Sphere& sphere);
+Box box_of(const Geometry& geometry, std::int32_t id);  ///< Of one shape; a mesh's exactly.
 
 }  // namespace etendue

@@ -122,16 +122,16 @@ Camera make_camera(const Object& description, Dialect dialect, std::vector<Unrea
   const double px = 2 * half_width / camera.width_px;
   const auto to_world = [&](const Vec3<double>& v) { return transform_vector(world_from_camera, v); };
   camera.origin = transform_point(world_from_camera, {0, 0, 0});
-  camera.start = Camera::narrow(camera.origin);
+  camera.start = narrow(camera.origin);
   if (!is_within_reach(camera.origin))
-    throw InputError(parameters.location("toWorld"), "the camera is too far from the origin to compute with",
+    throw PlaceError(parameters.location("toWorld"), "the camera is too far from the origin to compute with",
                      "scale the scene to common sizes");
   camera.at_film_origin = to_world({-image_right * half_width, 0.5 * px * camera.height_px, 1});
   camera.per_px_x = to_world({image_right * px, 0, 0});
   camera.per_px_y = to_world({0, -px, 0});
   if (lens.radius > 0) {
-    camera.lens_x = Camera::narrow(to_world({lens.radius, 0, 0}));
-    camera.lens_y = Camera::narrow(to_world({0, lens.radius, 0}));
+    camera.lens_x = narrow(to_world({lens.radius, 0, 0}));
+    camera.lens_y = narrow(to_world({0, lens.radius, 0}));
     camera.inv_focus_distance = float(1 / lens.focus_distance);
     camera.has_lens = true;
     if (!std::isfinite(length_sq(camera.lens_x)) || !std::isfinite(length_sq(camera.lens_y)) ||

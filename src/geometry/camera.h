@@ -60,7 +60,6 @@ struct Camera {
   void approach(const Sphere& scene);
 
   Vec3f eye() const { return narrow(origin); }
-  static Vec3f narrow(const Vec3<double>& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
  private:
   template <class F>

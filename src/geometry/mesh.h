@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,9 @@ struct Mesh {
   std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
-/// A file that has been read once: its mesh under any world_from_object.
-using MeshFile = std::function<Mesh(const Transform& world_from_object)>;
+/// A file that has been read once: its mesh under any world_from_object. \param usemtl of the faces of one
+/// material, by its name, where one is given ("": of those without); else of all
+using MeshFile =
+    std::function<Mesh(const Transform& world_from_object, const std::optional<std::string>& usemtl)>;
 
 }  // namespace etendue

@@ -2,6 +2,7 @@
 
 #include "base/reach.h"
 #include "geometry/mesh_text.h"
+#include "geometry/rounded_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +10,7 @@
 #include <utility>
 
 namespace etendue {
-namespace {
-
-Vec3<double> to_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
-}  // namespace
+namespace {}  // namespace
 
 std::uint32_t VertexTable::find_or_add(const Corner& corner) {
   auto& first = first_of_position_[corner.position];
@@ -70,21 +67,26 @@ MeshBuilder::MeshBuilder(std::string name, const ObjectParts& parts, const Trans
       errors_(std::move(errors)),
       vertices_(parts_.positions.size()) {
   mesh_.name = std::move(name);
+  if (const std::string rounding = float_rounding_in_file(parts.positions); !rounding.empty())
+    mesh_.warnings.push_back(fmt::format(
+        "{}: {}\nexport the object where it is near the origin, and put it in its place by toWorld",
+        mesh_.name, rounding));
   mesh_.positions.reserve(parts_.positions.size());
   for (std::size_t i = 0; i < parts_.positions.size(); ++i) {
     const Vec3f& p = parts_.positions[i];
     if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
     const Vec3<double> wide = transform_point(world_from_object, parts.positions[i]);
     const double misfit = !std::isfinite(p.x) ? wide.x : !std::isfinite(p.y) ? wide.y : wide.z;
-    throw errors_.at_position(i, fmt::format("{:g} does not fit a float", misfit),
-                              "expected coordinates, in world space, below 3e38");
+    throw PlaceError(errors_.at_position(i, fmt::format("{:g} does not fit a float", misfit),
+                                         "expected coordinates, in world space, below 3e38"));
   }
 }
 
 void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {
+  if (!first_face_) first_face_ = face;
   if (c.size() == 3) return add_triangle(face, {c[0], c[1], c[2]});
   polygon_.clear();
-  for (const Corner& corner : c) polygon_.push_back(to_double(parts_.positions[corner.position]));
+  for (const Corner& corner : c) polygon_.push_back(widen(parts_.positions[corner.position]));
   triangulate(polygon_, triangles_);
   for (const auto& [i, j, k] : triangles_.corners) add_triangle(face, {c[i], c[j], c[k]});
   if (!triangles_.is_simple)
@@ -95,8 +97,8 @@ void MeshBuilder::add_face(std::size_t face, std::span<const Corner> c) {
 
 Mesh MeshBuilder::finish() && {
   if (mesh_.indices.empty())
-    throw errors_.at_face(0, "no triangle has an area",
-                          "the mesh, or the transform it is given, is flat; check its scale");
+    throw PlaceError(errors_.at_face(first_face_.value_or(0), "no triangle has an area",
+                                     "the mesh, or the transform it is given, is flat; check its scale"));
   warn(crossing_, "this polygon crosses itself, or is folded", "{} polygons cross themselves, or are folded",
        "it has no inside to fill with triangles, and gets a fan from its first corner; cut it in two");
   warn(bent_, "the corners of this polygon lie far from one plane",
@@ -116,9 +118,9 @@ void MeshBuilder::warn(const OddFaces& faces, std::string_view problem, std::str
 }
 
 void MeshBuilder::add_triangle(std::size_t face, std::array<Corner, 3> corners) {
-  const auto p0 = to_double(parts_.positions[corners[0].position]);
-  const auto p1 = to_double(parts_.positions[corners[1].position]);
-  const auto p2 = to_double(parts_.positions[corners[2].position]);
+  const auto p0 = widen(parts_.positions[corners[0].position]);
+  const auto p1 = widen(parts_.positions[corners[1].position]);
+  const auto p2 = widen(parts_.positions[corners[2].position]);
   const auto double_area_normal = cross(p1 - p0, p2 - p0);
   const double double_area_sq = length_sq(double_area_normal);
   const double longest_sq = std::max({length_sq(p1 - p0), length_sq(p2 - p1), length_sq(p0 - p2)});
@@ -129,8 +131,8 @@ void MeshBuilder::add_triangle(std::size_t face, std::array<Corner, 3> corners) 
     return;
   }
   if (!is_within_reach(p0) || !is_within_reach(p1) || !is_within_reach(p2))
-    throw errors_.at_face(face, "a triangle with a corner beyond 1e15 m from the origin",
-                          "scale the mesh down, or move it nearer with toWorld");
+    throw PlaceError(errors_.at_face(face, "a triangle with a corner beyond 1e15 m from the origin",
+                                     "scale the mesh down, or move it nearer with toWorld"));
   if (double_area_sq > std::numeric_limits<float>::max())
     throw errors_.at_face(face, "a triangle too large for single precision",
                           "scale the scene down, so that no area exceeds 1e18 square metres");
@@ -157,7 +159,7 @@ void MeshBuilder::give_normals(std::array<Corner, 3>& corners, const Vec3<double
           corner.normal, "has no direction",
           "the file or the transform makes it zero; export the mesh without normals, or write one that is "
           "not zero");
-    sum = sum + to_double(normal);
+    sum = sum + widen(normal);
   }
   if (dot(double_area_normal, sum) < 0) std::swap(corners[1], corners[2]);
 }

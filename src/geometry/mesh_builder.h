@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -93,7 +94,7 @@ class MeshBuilder {
   /// direction that a triangle uses.
   void add_face(std::size_t face, std::span<const Corner> corners);
 
-  /// Throws, at face 0, where no triangle has an area.
+  /// Throws, at the first face, where no triangle has an area.
   Mesh finish() &&;
 
  private:
@@ -116,6 +117,7 @@ class MeshBuilder {
   VertexTable vertices_;
   PolygonTriangles triangles_;
   std::vector<Vec3<double>> polygon_;
+  std::optional<std::size_t> first_face_;
   OddFaces crossing_, bent_;
   Mesh mesh_;
 };

@@ -1,20 +1,14 @@
-// What the readers of mesh files share: the file as text, its numbers, vectors in world space.
+// What the readers of mesh files share: numbers, their errors, vectors in world space.
 #pragma once
 
 #include "base/error.h"
 #include "base/vec.h"
 
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace etendue {
-
-/// The whole file. Throws InputError where it is missing, no regular file, or cannot be read.
-/// \param kind for messages: "an OBJ mesh"
-std::shared_ptr<const SourceFile> read_mesh_file(const std::filesystem::path& file, std::string_view kind);
 
 /// The file without a place in it, for what has no lines.
 Location whole_file(const SourceFile& source);

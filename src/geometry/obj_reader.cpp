@@ -3,6 +3,9 @@
 #include "geometry/mesh_builder.h"
 #include "geometry/mesh_text.h"
 #include "scenefile/file_format.h"
+#include "scenefile/obj_cursor.h"
+#include "scenefile/text_file.h"
+#include "scenefile/whole_file.h"
 
 #include <algorithm>
 #include <array>
@@ -25,84 +28,18 @@ struct Face {
   std::size_t first_corner;
 };
 
+/// Faces of one material, up to those of the next run.
+struct MaterialRun {
+  std::string material;  ///< Empty before the first usemtl.
+  std::size_t first_face;
+};
+
 /// The statements of a file.
 struct Statements : ObjectParts {
   std::vector<Face> faces;
   std::vector<Corner> corners;
-  std::set<std::string_view> materials;  ///< By their names.
-  std::size_t first_material = 0;        ///< Where the first is given.
-};
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-
-/// Walks the text by tokens. A backslash at a line's end joins it with the next line.
-class Cursor {
- public:
-  Cursor(const std::string& text, std::size_t offset)
-      : begin_(text.data()), at_(begin_ + offset), end_(begin_ + text.size()) {}
-
-  bool at_end() const { return at_ == end_; }
-  bool at_statement_end() const { return at_ == end_ || is_line_end(*at_) || *at_ == '#'; }
-  bool at_token_end() const {
-    return at_ == end_ || is_blank(*at_) || is_line_end(*at_) || continuation() > 0;
-  }
-  std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
-  const char* at() const { return at_; }
-  const char* end() const { return end_; }
-  void move_to(const char* at) { at_ = at; }
-
-  void skip_blanks() {
-    for (;;) {
-      if (at_ != end_ && is_blank(*at_))
-        ++at_;
-      else if (const auto joined = continuation())
-        at_ += joined;
-      else
-        return;
-    }
-  }
-
-  /// Comments and statements that nobody reads are not continued: a path may end in a backslash.
-  void skip_line() {
-    while (at_ != end_ && !is_line_end(*at_)) ++at_;
-    if (at_ != end_) ++at_;
-  }
-
-  /// True, and past it, where the next token is `word`.
-  bool accept(std::string_view word) {
-    if (!std::string_view(at_, static_cast<std::size_t>(end_ - at_)).starts_with(word)) return false;
-    const auto before = at_;
-    at_ += word.size();
-    if (at_token_end()) return true;
-    at_ = before;
-    return false;
-  }
-
-  /// True, and past it, where the next character is `c`.
-  bool accept(char c) {
-    if (at_ == end_ || *at_ != c) return false;
-    ++at_;
-    return true;
-  }
-
-  std::string_view take_token() {
-    const auto first = at_;
-    while (!at_token_end()) ++at_;
-    return {first, static_cast<std::size_t>(at_ - first)};
-  }
-
- private:
-  std::ptrdiff_t continuation() const {
-    if (at_ == end_ || *at_ != '\\' || end_ - at_ < 2) return 0;
-    if (at_[1] == '\n') return 2;
-    if (at_[1] != '\r') return 0;
-    return end_ - at_ > 2 && at_[2] == '\n' ? 3 : 2;
-  }
-
-  const char* begin_;
-  const char* at_;
-  const char* end_;
+  std::vector<MaterialRun> runs{{{}, 0}};
+  std::size_t first_material = 0;  ///< Where the first is given; 0 where none is.
 };
 
 class Parser {
@@ -190,9 +127,9 @@ class Parser {
   }
 
   void read_material(std::size_t start) {
+    if (read_.runs.size() == 1) read_.first_material = start;
     cursor_.skip_blanks();
-    if (read_.materials.empty()) read_.first_material = start;
-    read_.materials.insert(cursor_.take_token());
+    read_.runs.push_back({as_utf8(cursor_.take_rest()), read_.faces.size()});
   }
 
   void read_normal() { read_.normals.push_back(read_numbers("normal", read_.normals.size(), 3)); }
@@ -224,7 +161,7 @@ class Parser {
   }
 
   [[noreturn]] void fail_at_corner(std::size_t corner_start) const {
-    const auto token = Cursor(source_->text, corner_start).take_token();
+    const auto token = ObjCursor(source_->text, corner_start).take_token();
     fail(corner_start, token.size(), fmt::format("{} is not a face vertex", quoted(token)),
          "expected v, v/vt, v//vn or v/vt/vn with whole numbers");
   }
@@ -249,8 +186,55 @@ class Parser {
   }
 
   std::shared_ptr<const SourceFile> source_;
-  Cursor cursor_;
+  ObjCursor cursor_;
   Statements read_;
+};
+
+/// Numbers anew, from 0 and in the order of their first use, some of what a file lists.
+class Numbering {
+ public:
+  explicit Numbering(std::size_t count_in_file) : number_(count_in_file, none) {}
+  std::uint32_t number(std::uint32_t in_file) {
+    if (in_file == none) return none;
+    if (number_[in_file] == none) {
+      number_[in_file] = static_cast<std::uint32_t>(in_file_.size());
+      in_file_.push_back(in_file);
+    }
+    return number_[in_file];
+  }
+  std::size_t in_file(std::size_t number) const { return in_file_[number]; }
+
+  template <class T>
+  std::vector<T> taken_from(const std::vector<T>& all) const {
+    std::vector<T> taken;
+    taken.reserve(in_file_.size());
+    for (const std::uint32_t i : in_file_) taken.push_back(all[i]);
+    return taken;
+  }
+
+ private:
+  std::vector<std::uint32_t> number_, in_file_;
+};
+
+struct FaceRange {
+  std::size_t begin, end;
+};
+
+/// What some faces use of a file.
+struct UsedParts {
+  Numbering positions, uvs, normals;
+  ObjectParts parts;
+
+  explicit UsedParts(const ObjectParts& all)
+      : positions(all.positions.size()), uvs(all.uvs.size()), normals(all.normals.size()) {}
+  Corner number(const Corner& corner) {
+    return {positions.number(corner.position), uvs.number(corner.uv), normals.number(corner.normal)};
+  }
+  void take(const ObjectParts& all) {
+    parts.positions = positions.taken_from(all.positions);
+    parts.uvs = uvs.taken_from(all.uvs);
+    parts.normals = normals.taken_from(all.normals);
+  }
 };
 
 /// Puts the faces together, once it is known what the file has.
@@ -263,36 +247,57 @@ class Assembler {
       has_normals_ |= corner.normal != none;
     }
     for (std::size_t f = 0; f < read_.faces.size(); ++f) check_face(f);
+    for (std::size_t r = 1; r < read_.runs.size(); ++r) materials_.insert(read_.runs[r].material);
   }
 
-  Mesh build(const Transform& world_from_object) const {
+  Mesh build(const Transform& world_from_object, const std::optional<std::string>& usemtl) const {
+    const std::vector<FaceRange> ranges = ranges_of(usemtl);
+    // Of a part of the file, what the other parts use is left alone.
+    std::optional<UsedParts> used;
+    if (usemtl) used = parts_used_by(ranges);
     const auto fail_at_face = [this](std::size_t face, std::string_view problem, std::string_view hint) {
       return error(read_.faces[face].offset, problem, hint);
     };
-    const auto fail_at_position = [this](std::size_t index, std::string_view problem, std::string_view hint) {
-      Cursor cursor = find_statement("v", index);
+    const auto fail_at_position = [&](std::size_t index, std::string_view problem, std::string_view hint) {
+      if (used) index = used->positions.in_file(index);
+      ObjCursor cursor = find_statement("v", index);
       cursor.accept("v");
       cursor.skip_blanks();
       return error(cursor.offset(), fmt::format("vertex {}: {}", index + 1, problem), hint);
     };
-    const auto fail_at_normal = [this](std::size_t index, std::string_view problem, std::string_view hint) {
+    const auto fail_at_normal = [&](std::size_t index, std::string_view problem, std::string_view hint) {
+      if (used) index = used->normals.in_file(index);
       return error(find_statement("vn", index).offset(), fmt::format("normal {} {}", index + 1, problem),
                    hint);
     };
-    MeshBuilder builder(source_->path, read_, world_from_object, has_uvs_, has_normals_,
+    const ObjectParts& whole = read_;
+    const ObjectParts& parts = used ? used->parts : whole;
+    MeshBuilder builder(source_->path, parts, world_from_object, has_uvs_, has_normals_,
                         {fail_at_face, fail_at_position, fail_at_normal});
-    builder.reserve_triangles(read_.corners.size() - 2 * read_.faces.size());
-    for (std::size_t f = 0; f < read_.faces.size(); ++f)
-      builder.add_face(
-          f, std::span(read_.corners).subspan(first_corner(f), first_corner(f + 1) - first_corner(f)));
+    std::size_t triangles = 0;
+    for (const FaceRange& range : ranges)
+      triangles += first_corner(range.end) - first_corner(range.begin) - 2 * (range.end - range.begin);
+    builder.reserve_triangles(triangles);
+    std::vector<Corner> renumbered;
+    for (const FaceRange& range : ranges)
+      for (std::size_t f = range.begin; f < range.end; ++f) {
+        std::span<const Corner> corners = corners_of(f);
+        if (used) {
+          renumbered.clear();
+          for (const Corner& corner : corners) renumbered.push_back(used->number(corner));
+          corners = renumbered;
+        }
+        builder.add_face(f, corners);
+      }
     Mesh mesh = std::move(builder).finish();
-    mesh.materials = read_.materials.size();
+    mesh.materials = materials_.size();
     if (mesh.materials > 0)
       mesh.materials_passed_over =
           error(
               read_.first_material, "the materials of this file are passed over",
-              "all of the mesh has the bsdf and emitter that the scene file gives it; a mesh without bsdf is "
-              "diffuse grey")
+              "all of the mesh has the bsdf and emitter that the scene file gives it (a mesh without bsdf is "
+              "diffuse grey); <boolean name=\"materials\" value=\"true\"/> in the mesh takes those of the "
+              "file")
               .what();
     return mesh;
   }
@@ -305,16 +310,44 @@ class Assembler {
   }
 
   /// Number `index`, from 0, of the statements that begin with `word`; no place is kept for each.
-  Cursor find_statement(std::string_view word, std::size_t index) const {
-    for (Cursor cursor(source_->text, 0);; cursor.skip_line()) {
+  ObjCursor find_statement(std::string_view word, std::size_t index) const {
+    for (ObjCursor cursor(source_->text, 0);; cursor.skip_line()) {
       cursor.skip_blanks();
-      Cursor inside = cursor;
+      ObjCursor inside = cursor;
       if (!inside.accept(word)) continue;
       if (index-- == 0) return cursor;
       // Past lines that continue it.
       for (inside.skip_blanks(); !inside.at_statement_end(); inside.skip_blanks()) inside.take_token();
       cursor = inside;
     }
+  }
+
+  /// Throws where there is none.
+  std::vector<FaceRange> ranges_of(const std::optional<std::string>& usemtl) const {
+    std::vector<FaceRange> ranges;
+    for (std::size_t r = 0; r < read_.runs.size(); ++r) {
+      if (usemtl && read_.runs[r].material != *usemtl) continue;
+      const std::size_t begin = read_.runs[r].first_face,
+                        end = r + 1 < read_.runs.size() ? read_.runs[r + 1].first_face : read_.faces.size();
+      if (begin < end) ranges.push_back({begin, end});
+    }
+    if (ranges.empty())
+      throw InputError(whole_file(*source_), fmt::format("no face has the material '{}'", *usemtl),
+                       known_names(*usemtl, {materials_.begin(), materials_.end()}));
+    return ranges;
+  }
+
+  UsedParts parts_used_by(const std::vector<FaceRange>& ranges) const {
+    UsedParts used(read_);
+    for (const FaceRange& range : ranges)
+      for (std::size_t k = first_corner(range.begin); k < first_corner(range.end); ++k)
+        used.number(read_.corners[k]);
+    used.take(read_);
+    return used;
+  }
+
+  std::span<const Corner> corners_of(std::size_t face) const {
+    return std::span(read_.corners).subspan(first_corner(face), first_corner(face + 1) - first_corner(face));
   }
 
   std::size_t first_corner(std::size_t face) const {
@@ -333,7 +366,7 @@ class Assembler {
   void check_range(std::size_t face, std::size_t corner, std::uint32_t index, std::size_t count,
                    std::string_view statement) const {
     if (index == none || index < count) return;
-    Cursor cursor(source_->text, read_.faces[face].offset);
+    ObjCursor cursor(source_->text, read_.faces[face].offset);
     cursor.take_token();
     for (std::size_t k = read_.faces[face].first_corner; k < corner; ++k) {
       cursor.skip_blanks();
@@ -348,13 +381,14 @@ class Assembler {
 
   std::shared_ptr<const SourceFile> source_;
   Statements read_;
+  std::set<std::string> materials_;  ///< That are named, with faces or without.
   bool has_uvs_ = false, has_normals_ = false;
 };
 
 }  // namespace
 
 MeshFile read_obj_file(const std::filesystem::path& file) {
-  const auto source = read_mesh_file(file, "an OBJ mesh");
+  const auto source = read_whole_file(file, "an OBJ mesh");
   if (source->text.empty())
     throw InputError(Location{source}, "the file is empty", "expected an OBJ mesh: v and f statements");
   if (const std::string_view format = format_of_content(source->text);
@@ -366,11 +400,13 @@ MeshFile read_obj_file(const std::filesystem::path& file) {
     throw InputError(Location{source}, "no face",
                      "expected an OBJ mesh with f statements; points and lines alone cannot be rendered");
   return [all = std::make_shared<const Assembler>(source, std::move(read))](
-             const Transform& world_from_object) { return all->build(world_from_object); };
+             const Transform& world_from_object, const std::optional<std::string>& usemtl) {
+    return all->build(world_from_object, usemtl);
+  };
 }
 
 Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_object) {
-  return read_obj_file(file)(world_from_object);
+  return read_obj_file(file)(world_from_object, {});
 }
 
 }  // namespace etendue

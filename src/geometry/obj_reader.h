@@ -21,8 +21,9 @@ namespace etendue {
 /// zero and that a triangle uses.
 Mesh read_obj(const std::filesystem::path& file, const Transform& world_from_object);
 
-/// The same in two steps, for a file that is used several times. What depends on the transform (normals
-/// without direction, triangles too large or without area) is thrown where the mesh is made.
+/// The same in two steps, for a file that is used several times, or by its materials. What depends on the
+/// transform (normals without direction, triangles too large or without area) is thrown where the mesh is
+/// made, and so is a material that no face has.
 MeshFile read_obj_file(const std::filesystem::path& file);
 
 }  // namespace etendue

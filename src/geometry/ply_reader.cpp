@@ -4,6 +4,7 @@
 #include "geometry/mesh_text.h"
 #include "geometry/ply_header.h"
 #include "scenefile/file_format.h"
+#include "scenefile/whole_file.h"
 
 #include <algorithm>
 #include <array>
@@ -478,18 +479,20 @@ class PlyReader {
 }  // namespace
 
 MeshFile read_ply_file(const std::filesystem::path& file) {
-  const auto source = read_mesh_file(file, "a PLY mesh");
+  const auto source = read_whole_file(file, "a PLY mesh");
   if (source->text.empty()) throw InputError(Location{source}, "the file is empty", "expected a PLY mesh");
   if (format_of_content(source->text) == "an OBJ mesh")
     throw InputError(whole_file(*source), "this is an OBJ mesh, not a PLY mesh",
                      "write type=\"obj\" in the scene");
   const auto reader = std::make_shared<PlyReader>(source);
   reader->read();
-  return [reader](const Transform& world_from_object) { return reader->build(world_from_object); };
+  return [reader](const Transform& world_from_object, const std::optional<std::string>& /*usemtl*/) {
+    return reader->build(world_from_object);
+  };
 }
 
 Mesh read_ply(const std::filesystem::path& file, const Transform& world_from_object) {
-  return read_ply_file(file)(world_from_object);
+  return read_ply_file(file)(world_from_object, {});
 }
 
 }  // namespace etendue

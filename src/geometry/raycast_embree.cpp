@@ -210,11 +210,9 @@ struct Segment {
   bool has(double t) const { return t > t_near && t < t_far; }
 };
 
-Vec3<double> wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
 /// The nearest root of |origin + t direction - center| = radius.
 ShapeHit nearest_hit(const Sphere& sphere, const Segment& ray) {
-  const Vec3<double> from_center = ray.origin - wide(sphere.center);
+  const Vec3<double> from_center = ray.origin - widen(sphere.center);
   const double a = length_sq(ray.direction), half_b = dot(from_center, ray.direction);
   // The discriminant from the distance of the line to the centre: no cancellation for distant spheres
   // (Hearn and Baker, in Haines et al. 2019, "Precision improvements for ray/sphere intersection").
@@ -229,15 +227,15 @@ ShapeHit nearest_hit(const Sphere& sphere, const Segment& ray) {
 
 /// The point of the plane, as x and y of the unit disk that the transform made into this one.
 ShapeHit nearest_hit(const Disk& disk, const Segment& ray) {
-  const Vec3<double> along_x = wide(disk.along_x), along_y = wide(disk.along_y);
-  const Vec3<double> across = cross(along_x, along_y), to_center = wide(disk.center) - ray.origin;
+  const Vec3<double> along_x = widen(disk.along_x), along_y = widen(disk.along_y);
+  const Vec3<double> across = cross(along_x, along_y), to_center = widen(disk.center) - ray.origin;
   const double t = dot(to_center, across) / dot(ray.direction, across);
   if (!ray.has(t)) return {};
   const Vec3<double> from_center = ray.direction * t - to_center;
   const double x = dot(cross(from_center, along_y), across) / length_sq(across),
                y = dot(cross(along_x, from_center), across) / length_sq(across);
   if (!(x * x + y * y <= 1)) return {};
-  return {t, wide(disk.ng), x, y};
+  return {t, widen(disk.ng), x, y};
 }
 
 /// f(shape) with the sphere or disk that Embree numbers `primitive`.

@@ -18,7 +18,6 @@ Mesh make_rectangle(const Transform& world_from_object) {
 }
 
 Disk make_disk(const Transform& world_from_object) {
-  const auto narrow = [](const Vec3<double>& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
   const auto along_x = transform_vector(world_from_object, {1, 0, 0}),
              along_y = transform_vector(world_from_object, {0, 1, 0});
   const auto normal = normalize(cross(along_x, along_y));

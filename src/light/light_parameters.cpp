@@ -10,8 +10,6 @@ namespace etendue {
 
 namespace {
 
-Vec3f narrow(const Vec3<double>& v) { return {float(v.x), float(v.y), float(v.z)}; }
-
 /// Scene files hold only transforms that can be inverted.
 Transform world_from_light(const Parameters& parameters) {
   return parameters.has("toWorld") ? parameters.transform("toWorld") : Transform{};
@@ -43,7 +41,7 @@ Transform rotation_from_light(const Parameters& parameters) {
 Vec3f world_point(const Parameters& parameters, std::string_view name) {
   const Vec3f point = narrow(transform_point(world_from_light(parameters), parameters.point(name)));
   if (!is_within_reach(point))
-    throw InputError(parameters.location(name), fmt::format("'{}' lies beyond what can be rendered: {} {} {}",
+    throw PlaceError(parameters.location(name), fmt::format("'{}' lies beyond what can be rendered: {} {} {}",
                                                             name, point.x, point.y, point.z));
   return point;
 }

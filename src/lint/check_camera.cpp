@@ -16,6 +16,11 @@ std::string turn_shape_round(bool is_sphere) {
              : "turn its faces round (the order of their corners), or set the camera outside";
 }
 
+/// Something that shows where no shape is.
+bool has_something_else(const Scene& scene) {
+  return scene.lights.infinite_count() > 0 || scene.medium.has_value();
+}
+
 /// How far along the optical axis it lies what a ray would meet without clip planes, in the camera's own
 /// units.
 float depth_of(const Camera& camera, const View::Seen& seen) {
@@ -45,7 +50,9 @@ void check_clip_planes(const LintContext& context, Findings& findings) {
                   nearest > 1000 ? "; if these are millimetres, scale the scene by 0.001"
                                  : ", nearClip below what is seen");
   if (view.hits == 0)
-    findings.add("clipped-all", where, told + ": nothing is seen", remedy);
+    findings.add("clipped-all", where,
+                 told + (has_something_else(context.scene) ? ": no shape is seen" : ": nothing is seen"),
+                 remedy);
   else if (4 * behind_far > view.unclipped_hits)
     findings.add(
         "clipped-much", where,
@@ -64,11 +71,6 @@ bool has_shape_in_view(const Scene& scene) {
   for (std::size_t i = 0; i < vertices; i += step)
     if (is_in_view(scene.camera, geometry.positions[std::size_t(geometry.indices[i])])) return true;
   return false;
-}
-
-/// Something that shows where no shape is.
-bool has_something_else(const Scene& scene) {
-  return scene.lights.infinite_count() > 0 || scene.medium.has_value();
 }
 
 void add_inside(const LintContext& context, std::int32_t id, Findings& findings) {

@@ -12,31 +12,21 @@ namespace {
 /// Of what rounding does to a place, the share of a shape's size from which it is told.
 constexpr double worth_telling = 1e-2;
 
-Box box_of_shape(const Geometry& geometry, std::size_t id) {
-  if (geometry.sphere[id] >= 0) return box_of(geometry.spheres[std::size_t(geometry.sphere[id])]);
-  if (geometry.disk[id] >= 0) return box_of(geometry.disks[std::size_t(geometry.disk[id])]);
-  Box box;
-  const std::size_t begin = 3 * std::size_t(geometry.first_triangle[id]),
-                    end = begin + 3 * std::size_t(geometry.triangles[id]);
-  for (std::size_t k = begin; k < end; ++k) box.include(geometry.positions[std::size_t(geometry.indices[k])]);
-  return box;
-}
-
 }  // namespace
 
 void check_rounding(const LintContext& context, Findings& findings) {
   const Geometry& geometry = context.scene.geometry;
   // What reading the file in double has left of places far from its origin.
   const double in_file = length(context.scene.origin) * 0x1p-53;
-  for (std::size_t id = 0; id < std::size_t(geometry.count()); ++id) {
-    const Box box = box_of_shape(geometry, id);
+  for (std::int32_t id = 0; id < geometry.count(); ++id) {
+    const Box box = box_of(geometry, id);
     const double size = length(box.high - box.low);
     const auto farther = [](float a, float b) { return std::max(std::abs(double(a)), std::abs(double(b))); };
     const double farthest = std::max(
         {farther(box.low.x, box.high.x), farther(box.low.y, box.high.y), farther(box.low.z, box.high.z)});
     const double rounding = std::max(farthest * 0x1p-24, in_file);
     if (!(rounding > worth_telling * size)) continue;
-    const ScenePlaces::Shape& shape = context.places.shapes[id];
+    const ScenePlaces::Shape& shape = context.places.shapes[std::size_t(id)];
     findings.add(
         "rounded-place", shape.where,
         fmt::format("the {} is {:.2g} m in size, {:.2g} m from the middle of the scene: its places are "

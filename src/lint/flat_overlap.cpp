@@ -10,7 +10,6 @@ namespace {
 
 using Vec3d = Vec3<double>;
 
-Vec3d wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
 Vec3d unit(const Vec3d& v) { return v * (1 / std::sqrt(std::max(length_sq(v), 1e-300))); }
 
 FlatPiece piece_of(std::vector<Vec3d> corners, const Vec3d& ng) {
@@ -35,7 +34,7 @@ std::vector<Vec3d> clipped(const std::vector<Vec3d>& polygon, const Vec3d& from,
 
 FlatPiece triangle_piece(const Geometry& geometry, std::size_t triangle) {
   const auto corner = [&](std::size_t k) {
-    return wide(geometry.positions[std::size_t(geometry.indices[3 * triangle + k])]);
+    return widen(geometry.positions[std::size_t(geometry.indices[3 * triangle + k])]);
   };
   const Vec3d p = corner(0), q = corner(1), r = corner(2);
   return piece_of({p, q, r}, unit(cross(q - p, r - p)));
@@ -43,13 +42,13 @@ FlatPiece triangle_piece(const Geometry& geometry, std::size_t triangle) {
 
 FlatPiece disk_piece(const Disk& disk) {
   constexpr int sides = 24;
-  const Vec3d along_x = wide(disk.along_x), along_y = wide(disk.along_y), ng = wide(disk.ng);
+  const Vec3d along_x = widen(disk.along_x), along_y = widen(disk.along_y), ng = widen(disk.ng);
   // In their turn about ng, which a mirror image leaves where it was.
   const double turn = dot(cross(along_x, along_y), ng) < 0 ? -1 : 1;
   std::vector<Vec3d> corners;
   for (int k = 0; k < sides; ++k) {
     const double angle = turn * 2 * std::numbers::pi * k / sides;
-    corners.push_back(wide(disk.center) + along_x * std::cos(angle) + along_y * std::sin(angle));
+    corners.push_back(widen(disk.center) + along_x * std::cos(angle) + along_y * std::sin(angle));
   }
   return piece_of(std::move(corners), ng);
 }

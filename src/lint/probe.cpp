@@ -82,7 +82,7 @@ View look(const Scene& scene) {
 
 bool is_in_view(const Camera& camera, const Vec3f& place) {
   const Vec3<double> x = camera.per_px_x, y = camera.per_px_y, to_corner = camera.at_film_origin;
-  const Vec3<double> along = Vec3<double>{place.x, place.y, place.z} - camera.origin;
+  const Vec3<double> along = widen(place) - camera.origin;
   const double volume = dot(to_corner, cross(x, y)), depth = dot(along, cross(x, y)) / volume;
   const double from_start = depth - camera.start_depth;
   if (!(from_start > camera.near_clip && from_start < camera.far_clip)) return false;

@@ -103,7 +103,7 @@ HomogeneousMedium make_medium(const Object& description, std::vector<UnreadKey>&
   const Vec3<double> lower = transform_point(world_from_medium, {0, 0, 0}),
                      upper = transform_point(world_from_medium, {1, 1, 1});
   if (!is_within_reach(lower) || !is_within_reach(upper))
-    throw InputError(parameters.location("toWorld"), "this medium reaches too far to compute with",
+    throw PlaceError(parameters.location("toWorld"), "this medium reaches too far to compute with",
                      "scale the scene to common sizes");
   return {nonnegative_color(parameters, "sigmaA"), nonnegative_color(parameters, "sigmaS"), phase,
           world_from_medium};

@@ -235,8 +235,7 @@ class Loader {
     // Clip planes are in the camera's own units.
     const double unit =
         std::abs(dot(camera_->at_film_origin, normalize(cross(camera_->per_px_x, camera_->per_px_y))));
-    const Vec3<double> center{bounds.center.x, bounds.center.y, bounds.center.z};
-    const double farthest = (length(center - camera_->origin) + bounds.radius) / unit;
+    const double farthest = (length(widen(bounds.center) - camera_->origin) + bounds.radius) / unit;
     if (!places_.far_clip) camera_->far_clip = std::max(camera_->far_clip, float(1.01 * farthest));
     if (!has_near_clip_) camera_->near_clip *= float(std::min(1.0, bounds.radius / unit));
   }
@@ -309,12 +308,12 @@ LoadedScene load_scene(const SceneDesc& description, const LoadSettings& setting
     const Sphere shapes = bounding_sphere(loaded.scene.geometry);
     if (!is_far_from_origin(shapes)) return loaded;
     const Vec3<double>& origin = loaded.scene.origin;
-    return load_about(origin + Vec3<double>{shapes.center.x, shapes.center.y, shapes.center.z});
+    return load_about(origin + widen(shapes.center));
   };
   try {
     return load_nearer(Loader(description, settings).load());
-  } catch (const InputError&) {
-    // Where the scene is very far away, floats may not tell the corners of a shape apart: the camera is near.
+  } catch (const PlaceError&) {
+    // Floats may tell apart near the camera what they do not where the file has it.
     const Vec3<double> camera = camera_place(description);
     if (!(length_sq(camera) > 0)) throw;
     std::optional<LoadedScene> loaded;

@@ -24,7 +24,10 @@ const Plugin obj_plugin{
     "shape",
     "obj",
     "A triangle mesh from a Wavefront OBJ file; written as <mesh type=\"obj\"> or <shape type=\"obj\">.",
-    {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
+    {{"filename", Type::text, "", "", "The file, relative to the scene file", true},
+     to_world,
+     {"materials", Type::boolean, "false", "", "With the materials of the MTL files that it names"},
+     {"usemtl", Type::text, "", "", "Only the faces of this material"}},
     surface_children};
 const Plugin ply_plugin{
     "shape",
@@ -72,7 +75,7 @@ void check_extent(const Object& object, const Vec3f& corner, const Vec3f& along_
   const float area_sq = length_sq(cross(along_x, along_y));
   if (!(area_sq > 0) || !std::isfinite(area_sq) || !is_within_reach(corner) ||
       !is_within_reach(corner + along_x) || !is_within_reach(corner + along_y))
-    throw InputError(object.location,
+    throw PlaceError(object.location,
                      fmt::format("this {} has no area that can be computed with", object.type),
                      "it is too small, too large, or too far from the origin for its size");
 }
@@ -96,9 +99,9 @@ Sphere make_sphere(const Parameters& parameters) {
                     along_x, along_y, along_z),
         "scale all axes alike and do not shear, or use a mesh");
   const Vec3<double> center = transform_point(transform, parameters.point("center"));
-  const Sphere sphere{{float(center.x), float(center.y), float(center.z)}, float(radius * along_x)};
+  const Sphere sphere{narrow(center), float(radius * along_x)};
   if (!(sphere.radius > 0) || !is_within_reach(sphere.center) || !is_within_reach(Vec3f{sphere.radius, 0, 0}))
-    throw InputError(
+    throw PlaceError(
         parameters.object().location,
         fmt::format("in the world this sphere has radius {:.4g} at {:.4g} {:.4g} {:.4g}: beyond what can be "
                     "rendered",
@@ -110,10 +113,7 @@ Sphere make_sphere(const Parameters& parameters) {
 /// Moves a mesh along its front: each vertex along the mean normal of the triangles around it.
 void lift_mesh(Mesh& mesh, float lift) {
   std::vector<Vec3<double>> across(mesh.positions.size(), {0, 0, 0});
-  const auto corner = [&](std::size_t i) {
-    const Vec3f& p = mesh.positions[mesh.indices[i]];
-    return Vec3<double>{p.x, p.y, p.z};
-  };
+  const auto corner = [&](std::size_t i) { return widen(mesh.positions[mesh.indices[i]]); };
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const Vec3<double> area = cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i));
     for (std::size_t k = i; k < i + 3; ++k) across[mesh.indices[k]] = across[mesh.indices[k]] + area;
@@ -122,7 +122,7 @@ void lift_mesh(Mesh& mesh, float lift) {
     if (length_sq(across[v]) > 0) {
       const Vec3<double> up = normalize(across[v]) * double(lift);
       Vec3f& p = mesh.positions[v];
-      p = {float(p.x + up.x), float(p.y + up.y), float(p.z + up.z)};
+      p = narrow(widen(p) + up);
     }
 }
 
@@ -145,12 +145,14 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const bool is_obj = object.type == obj_plugin.name;
     const Parameters parameters(object, is_obj ? obj_plugin : ply_plugin, unread);
     const std::filesystem::path file = existing_file(parameters, "filename", directory, "a mesh file");
-    Mesh mesh =
-        meshes.read(object, file, world_from_object(parameters), is_obj ? read_obj_file : read_ply_file);
+    std::optional<std::string> usemtl;
+    if (is_obj && parameters.is_stated("usemtl")) usemtl = parameters.text("usemtl");
+    Mesh mesh = meshes.read(object, file, world_from_object(parameters), usemtl,
+                            is_obj ? read_obj_file : read_ply_file);
     const std::string name = label(object, file.stem().string());
     const bool has_bsdf = std::any_of(object.children.begin(), object.children.end(), is_bsdf);
     // Of a single material nothing is lost where the scene file has its own.
-    if (mesh.materials > (has_bsdf ? 1 : 0)) warnings.push_back(mesh.materials_passed_over);
+    if (!usemtl && mesh.materials > (has_bsdf ? 1 : 0)) warnings.push_back(mesh.materials_passed_over);
     warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     if (mesh.dropped_triangles > 0)
       warnings.push_back(format_message(

@@ -22,16 +22,16 @@ MeshFiles::MeshFiles(const Object& root) {
 }
 
 Mesh MeshFiles::read(const Object& shape, const std::filesystem::path& file,
-                     const Transform& world_from_object,
+                     const Transform& world_from_object, const std::optional<std::string>& usemtl,
                      MeshFile (*read_file)(const std::filesystem::path&)) {
   Use& use = uses_[key_of(shape)];
   if (!use.file) use.file = read_file(file);
   if (use.left > 1) {
     --use.left;
-    return use.file(world_from_object);
+    return use.file(world_from_object, usemtl);
   }
   const MeshFile last = std::exchange(use.file, nullptr);
-  return last(world_from_object);
+  return last(world_from_object, usemtl);
 }
 
 }  // namespace etendue

@@ -5,6 +5,7 @@
 #include "scenefile/scene_desc.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -16,9 +17,10 @@ class MeshFiles {
   /// \param root the scene, whose shapes' filenames are counted
   explicit MeshFiles(const Object& root);
 
+  /// \param usemtl as of MeshFile
   /// \param read_file read_obj_file or read_ply_file, where `file` has not been read yet
   Mesh read(const Object& shape, const std::filesystem::path& file, const Transform& world_from_object,
-            MeshFile (*read_file)(const std::filesystem::path&));
+            const std::optional<std::string>& usemtl, MeshFile (*read_file)(const std::filesystem::path&));
 
  private:
   struct Use {

@@ -43,32 +43,37 @@ std::string meant_path(std::string stated, const fs::path& directory) {
   return found.string();
 }
 
-std::string what_to_do(const std::string& stated, const fs::path& directory) {
+std::string what_to_do(const std::string& stated, const fs::path& directory, std::string_view relative_to) {
   const std::string meant = meant_path(stated, directory);
   const bool has_backslashes = stated.find('\\') != std::string::npos;
   if (!meant.empty())
     return fmt::format("did you mean '{}'? {}", meant,
                        has_backslashes ? "folders are parted by /, not by the backslash of Windows"
                                        : "capitals count in the names of files");
-  return fmt::format("looked for {}; paths are relative to the scene file{}", (directory / stated).string(),
+  return fmt::format("looked for {}; paths are relative to {}{}", (directory / stated).string(), relative_to,
                      has_backslashes ? ", and folders are parted by /, not by a backslash" : "");
 }
 
 }  // namespace
 
-std::filesystem::path existing_file(const Parameters& parameters, std::string_view name,
-                                    const std::filesystem::path& directory, std::string_view wanted) {
-  const std::string stated = parameters.text(name);
+std::filesystem::path existing_file(const std::string& stated, const Location& where,
+                                    const std::filesystem::path& directory, std::string_view wanted,
+                                    std::string_view relative_to) {
   const std::filesystem::path file = directory / stated;
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status))
-    throw InputError(parameters.location(name), fmt::format("'{}' is not there", stated),
-                     what_to_do(stated, directory));
+    throw InputError(where, fmt::format("'{}' is not there", stated),
+                     what_to_do(stated, directory, relative_to));
   if (std::filesystem::is_directory(status))
-    throw InputError(parameters.location(name), fmt::format("'{}' is a folder", stated),
+    throw InputError(where, fmt::format("'{}' is a folder", stated),
                      fmt::format("give the name of {}", wanted));
   return file;
+}
+
+std::filesystem::path existing_file(const Parameters& parameters, std::string_view name,
+                                    const std::filesystem::path& directory, std::string_view wanted) {
+  return existing_file(parameters.text(name), parameters.location(name), directory, wanted, "the scene file");
 }
 
 }  // namespace etendue

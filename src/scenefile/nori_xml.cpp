@@ -3,6 +3,7 @@
 #include "scenefile/file_format.h"
 #include "scenefile/folder_settings.h"
 #include "scenefile/foreign_names.h"
+#include "scenefile/obj_materials.h"
 #include "scenefile/text_file.h"
 #include "scenefile/value_text.h"
 
@@ -442,6 +443,7 @@ SceneDesc read_nori_xml(const std::filesystem::path& file, std::optional<Dialect
   SceneDesc scene = Reader(read_text_file(file)).read(dialect, folder);
   if (folder) scene.settings_file = folder->file;
   scene.directory = file.parent_path();
+  split_by_materials(scene);
   return scene;
 }
 

@@ -13,7 +13,8 @@ namespace etendue {
 /// deep). The dialect is, first of these: `dialect`; the attribute `dialect="..."` of the root; what
 /// an etendue.json says (folder_settings.h); what the names in the file tell (recognize_dialect). Children of
 /// a scene that have no part in its image (evaluators, previewers, denoisers) are left out, with a warning.
-/// Throws InputError for anything that is not well-formed or not of the format.
+/// Meshes are split by the materials of their OBJ files where they ask for them (split_by_materials). Throws
+/// InputError for anything that is not well-formed or not of the format.
 SceneDesc read_nori_xml(const std::filesystem::path& file, std::optional<Dialect> dialect = std::nullopt);
 
 }  // namespace etendue

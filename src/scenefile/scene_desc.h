@@ -43,6 +43,7 @@ struct SceneDesc {
   std::vector<std::string> warnings;      ///< Complete messages: what was left out of `root`.
   bool is_dialect_told = true;            ///< False where it is only assumed.
   std::filesystem::path settings_file{};  ///< The etendue.json that was read; empty: there is none.
+  std::vector<std::filesystem::path> material_libraries{};  ///< The MTL files that were read.
 };
 
 }  // namespace etendue

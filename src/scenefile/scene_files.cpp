@@ -57,6 +57,8 @@ std::vector<std::filesystem::path> files_named_by(const SceneDesc& description) 
   std::set<std::filesystem::path> known;
   std::vector<std::filesystem::path> files;
   add_files(description.root, description.directory, known, files);
+  for (const std::filesystem::path& library : description.material_libraries)
+    if (known.insert(library).second) files.push_back(library);
   return files;
 }
 

@@ -9,7 +9,8 @@
 
 namespace etendue {
 
-/// What the `filename` keys of a scene name, in the order of the scene file, each file once.
+/// What the `filename` keys of a scene name, in the order of the scene file, then the libraries of materials
+/// of its meshes, each file once. A mesh that was split by its materials has their textures among its keys.
 std::vector<std::filesystem::path> files_named_by(const SceneDesc& description);
 
 /// Of the dialect and the content of the scene file, and of all files that it names, in its order: scenes of

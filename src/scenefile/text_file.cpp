@@ -122,6 +122,10 @@ std::string latin1_to_utf8(std::string_view bytes) {
 
 }  // namespace
 
+std::string as_utf8(std::string_view bytes) {
+  return valid_utf8(bytes) == bytes.size() ? std::string(bytes) : latin1_to_utf8(bytes);
+}
+
 std::shared_ptr<const SourceFile> read_text_file(const std::filesystem::path& file, std::size_t most_bytes) {
   std::string bytes = read_bytes(file, most_bytes);
   if (const std::string_view format = format_of_content(bytes); !format.empty())

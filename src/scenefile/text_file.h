@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
 
 namespace etendue {
 
@@ -14,5 +16,8 @@ namespace etendue {
 /// `most_bytes`, holds a NUL character, or is not in the encoding it seems to be.
 std::shared_ptr<const SourceFile> read_text_file(const std::filesystem::path& file,
                                                  std::size_t most_bytes = std::size_t{256} << 20);
+
+/// The same text where it is UTF-8; else read as ISO-8859-1, in which everything is text.
+std::string as_utf8(std::string_view bytes);
 
 }  // namespace etendue

@@ -45,8 +45,8 @@ std::string lens_xml(double radius, double focus) {
 /// Where the ray meets the plane at `depth` along the optical axis.
 Vec3f at_depth(const Camera& camera, const CameraRay<float>& ray, float depth) {
   const Vec3f axis = normalize(axis_along);
-  return ray.origin + ray.direction * ((depth - dot(ray.origin - Camera::narrow(camera.origin), axis)) /
-                                       dot(ray.direction, axis));
+  return ray.origin +
+         ray.direction * ((depth - dot(ray.origin - narrow(camera.origin), axis)) / dot(ray.direction, axis));
 }
 
 struct Place {
@@ -73,9 +73,8 @@ TEST(Lens, KeepsItsFocalPlaneSharpAndBlursTheRestByTheCircleOfConfusion) {
     const CameraRay<float> middle = camera.ray(place.x_px, place.y_px);
     const CameraRay<float> rim = camera.ray(place.x_px, place.y_px, place.on_lens);
     EXPECT_NEAR(length(rim.direction), 1, 1e-6);
-    EXPECT_NEAR(length(rim.origin - Camera::narrow(camera.origin)), radius, 1e-6);
-    EXPECT_NEAR(dot(rim.origin - Camera::narrow(camera.origin), axis), 0, 1e-6)
-        << "the lens is square to the axis";
+    EXPECT_NEAR(length(rim.origin - narrow(camera.origin)), radius, 1e-6);
+    EXPECT_NEAR(dot(rim.origin - narrow(camera.origin), axis), 0, 1e-6) << "the lens is square to the axis";
     EXPECT_LT(length(at_depth(camera, rim, focus) - at_depth(camera, middle, focus)), 1e-5);
     for (const float depth : {1.0f, 4.0f, 7.5f, 20.0f})
       EXPECT_NEAR(length(at_depth(camera, rim, depth) - at_depth(camera, middle, depth)),
@@ -89,7 +88,7 @@ TEST(Lens, IsScaledWithTheCamera) {
   for (const Place& place : places()) {
     const CameraRay<float> middle = camera.ray(place.x_px, place.y_px);
     const CameraRay<float> rim = camera.ray(place.x_px, place.y_px, place.on_lens);
-    EXPECT_NEAR(length(rim.origin - Camera::narrow(camera.origin)), 0.5, 1e-6);
+    EXPECT_NEAR(length(rim.origin - narrow(camera.origin)), 0.5, 1e-6);
     EXPECT_LT(length(at_depth(camera, rim, 10) - at_depth(camera, middle, 10)), 2e-5);
     EXPECT_NEAR(middle.t_near * dot(middle.direction, normalize(axis_along)), 2e-4, 1e-9);
   }

@@ -283,6 +283,17 @@ TEST(Lint, NamesBothObjectsWithTheirPlaces) {
   EXPECT_EQ(line_and_column(findings[0].where).line, 5u);
 }
 
+TEST(Lint, ClipPlanesThatLeaveAnEnvironmentAreSaidToHideShapesOnly) {
+  const std::string clipped =
+      camera({0, -4, 1.5}, {0, 0, 0}, "<float name=\"farClip\" value=\"0.5\"/>") + floor() + lamp();
+  const auto problem_with = [&](const std::string& more) {
+    const std::vector<Finding> findings = findings_of(load_scene_text(clipped + more), "mis");
+    return findings.empty() ? "" : findings[0].problem;
+  };
+  EXPECT_NE(problem_with("").find("nothing is seen"), std::string::npos);
+  EXPECT_NE(problem_with("<emitter type=\"constant\"/>").find("no shape is seen"), std::string::npos);
+}
+
 TEST(Lint, BlackImagesHaveAReason) {
   const auto reason_of = [](const std::string& body, std::string_view integrator) {
     const LoadedScene loaded = load_scene_text(body);

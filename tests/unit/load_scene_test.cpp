@@ -4,6 +4,7 @@
 #include "scenefile/nori_xml.h"
 #include "support/program.h"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,6 +61,32 @@ TEST(Materials, WithUnknownKeysAreEachWarnedOf) {
   const std::string odd = shape("<bsdf type='mirror'><float name='shine' value='1'/></bsdf>");
   const LoadedScene loaded = load_with(odd + odd);
   EXPECT_EQ(loaded.warnings.size(), 2u);
+}
+
+/// `shapes`, read before their camera, which is at 1e16 m, where floats hold nothing.
+LoadedScene load_far(const std::string& shapes) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder.path() / "triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  test::write_file(folder.path() / "scene.xml",
+                   "<scene>" + shapes +
+                       "<camera type='perspective'><transform name='toWorld'><translate value='1e16,0,0'/>"
+                       "</transform></camera></scene>");
+  return load_scene(read_nori_xml(folder.path() / "scene.xml"));
+}
+
+TEST(ScenesFarAway, AreReadNearTheirCamera) {
+  const std::string there = "<transform name='toWorld'><translate value='1e16,0,3'/></transform>";
+  const auto at_camera = [](const LoadedScene& loaded) {
+    return std::abs(loaded.scene.origin.x - 1e16) < 100;
+  };
+  EXPECT_TRUE(at_camera(load_far("<shape type='rectangle'>" + there + "</shape>")));
+  EXPECT_TRUE(at_camera(load_far("<shape type='disk'>" + there + "</shape>")));
+  EXPECT_TRUE(at_camera(load_far("<shape type='sphere'>" + there + "</shape>")));
+  const std::string mesh =
+      "<mesh type='obj'><string name='filename' value='triangle.obj'/>" + there + "</mesh>";
+  EXPECT_TRUE(at_camera(load_far(mesh)));
+  EXPECT_TRUE(at_camera(load_far("<emitter type='point'>" + there + "</emitter>" + mesh)));
+  EXPECT_TRUE(at_camera(load_far("<medium type='homogeneous'>" + there + "</medium>" + mesh)));
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ int files_read = 0;
 
 MeshFile read_nothing(const std::filesystem::path& file) {
   ++files_read;
-  return [name = file.string()](const Transform& world_from_object) {
+  return [name = file.string()](const Transform& world_from_object,
+                                const std::optional<std::string>& /*usemtl*/) {
     const auto p = transform_point(world_from_object, {0, 0, 0});
     Mesh mesh;
     mesh.name = name;
@@ -37,13 +38,13 @@ TEST(MeshFiles, EachFileIsReadOnceForAllItsShapes) {
   float x = 0;
   for (const Object& child : root.children) {
     const std::string name = std::get<std::string>(child.properties[0].value);
-    const Mesh mesh = files.read(child, name, translation({++x, 0, 0}), read_nothing);
+    const Mesh mesh = files.read(child, name, translation({++x, 0, 0}), {}, read_nothing);
     EXPECT_EQ(mesh.name, name);
     EXPECT_EQ(mesh.positions[0].x, x);
   }
   EXPECT_EQ(files_read, 3);
   // All are forgotten: their memory is free for what comes.
-  files.read(root.children[0], "a", {}, read_nothing);
+  files.read(root.children[0], "a", {}, {}, read_nothing);
   EXPECT_EQ(files_read, 4);
 }
 
