@@ -48,7 +48,7 @@ struct Errors {
     const auto exact_projected = double(projected_solid_angle(outline, extended(c.ns)));
     if (!(exact_projected > 1e-14)) return;
     ++above_horizon;
-    const ProjectedPolygon<float> projected(in_frame(fan, Frame<float>(c.ns)));
+    const ProjectedPolygon<float> projected(fan, Frame<float>(c.ns));
     if (!projected.is_accurate()) return;
     ++accurate;
     const double projected_error = std::abs(projected.projected_solid_angle() / exact_projected - 1);

@@ -36,6 +36,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--sampler", options.sampler, "Instead of the file's: independent or sobol");
   command.add_option("--light-sampler", options.light_sampler,
                      "How lights are chosen, instead of the integrator's way: uniform, power or all");
+  command.add_option("--technique", options.technique,
+                     "Where on a polygon light samples lie, instead of the integrator's way: area, "
+                     "solid_angle, projected or auto");
   command.add_option("--spp", options.samples_per_pixel, "Samples a pixel in all, instead of the file's")
       ->check(whole_number(std::numeric_limits<int>::max()));
   command
@@ -118,6 +121,7 @@ std::string replay_command(const RenderOptions& options, const InvalidSample& sa
   if (!options.integrator.empty()) add("--integrator", options.integrator);
   if (!options.sampler.empty()) add("--sampler", options.sampler);
   if (!options.light_sampler.empty()) add("--light-sampler", options.light_sampler);
+  if (!options.technique.empty()) add("--technique", options.technique);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
   if (options.replicates) add("--replicates", *options.replicates);
   if (!options.replicates_by.empty()) add("--replicates-by", options.replicates_by);

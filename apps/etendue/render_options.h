@@ -15,7 +15,7 @@ namespace etendue::app {
 struct RenderOptions {
   std::string scene_file;
   std::vector<std::string> outputs;
-  std::string integrator, sampler, light_sampler, replicates_by, stats_file, replay;
+  std::string integrator, sampler, light_sampler, technique, replicates_by, stats_file, replay;
   std::optional<int> samples_per_pixel, replicates;
   RunOptions run;
   bool is_quiet = false, is_strict = false, is_in_sample_order = false, is_watertight = false;

@@ -54,6 +54,8 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendering& rende
     fields.emplace_back("heuristic", heuristic);
   if (const std::string_view light_sampler = settings.integrator.light_sampler(); !light_sampler.empty())
     fields.emplace_back("lightSampler", light_sampler);
+  if (const std::string_view technique = settings.integrator.light_technique(); !technique.empty())
+    fields.emplace_back("technique", technique);
   return fields;
 }
 

@@ -111,6 +111,7 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   if (const std::string_view heuristic = heuristic_name(settings.integrator); !heuristic.empty())
     json["heuristic"] = heuristic;
   json["light_sampler"] = settings.integrator.light_sampler();
+  json["technique"] = settings.integrator.light_technique();
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = rendering.samples_per_pixel();
   json["replicates"] = result.replicates;

@@ -107,6 +107,12 @@ V load_lanes(const T* p) {
     return V::load_aligned(p);
 }
 
+inline std::int32_t first_lane(std::int32_t v) { return v; }
+template <class A>
+std::int32_t first_lane(const xsimd::batch<std::int32_t, A>& v) {
+  return v.get(0);
+}
+
 /// base[index] for each lane.
 inline float gather(const float* base, std::int32_t index) { return base[index]; }
 inline std::int32_t gather(const std::int32_t* base, std::int32_t index) { return base[index]; }

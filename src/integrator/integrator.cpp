@@ -145,7 +145,8 @@ std::string text_of(const LightSamples& lights) {
   std::string text = fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
   if (lights.later_count > 0) text += fmt::format(" later_light_samples={}", lights.later_count);
   if (lights.candidates != 1) text += fmt::format(" candidates={}", lights.candidates);
-  if (lights.technique != LightTechnique::area) text += fmt::format(" technique={}", int(lights.technique));
+  if (lights.technique != LightTechnique::area)
+    text += fmt::format(" technique={}", light_technique_name(lights.technique));
   return text;
 }
 std::string text_of(const ByLights& by) { return text_of(by.lights); }
@@ -204,6 +205,11 @@ std::string_view IntegratorSettings::light_sampler() const {
   return paths && paths->light_samples() ? paths->light_samples()->sampler : "";
 }
 
+std::string_view IntegratorSettings::light_technique() const {
+  const PathRules* paths = path_rules();
+  return paths && paths->light_samples() ? light_technique_name(paths->light_samples()->technique) : "";
+}
+
 std::string_view heuristic_name(const IntegratorSettings& integrator) {
   const PathRules* rules = integrator.path_rules();
   return rules && rules->needs_both_pdfs() ? name_of(*rules->heuristic()) : "";
@@ -250,6 +256,16 @@ IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std:
     return candidate.rules(Heuristic::balance) == rules;
   });
   return {row == std::end(table) ? integrator.name : row->canonical, rules};
+}
+
+IntegratorSettings with_light_technique(const IntegratorSettings& integrator, std::string_view technique) {
+  const LightTechnique known = light_technique_from_name(technique);
+  if (integrator.light_sampler().empty())
+    throw InputError(
+        fmt::format("technique '{}': the integrator {} takes no samples of the lights\n"
+                    "take light, mis, path_ems or path_mis",
+                    technique, integrator.name));
+  return {integrator.name, integrator.path_rules()->with_technique(known)};
 }
 
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights) {

@@ -29,6 +29,8 @@ struct IntegratorSettings {
   bool needs_lights() const { return path_rules() != nullptr; }
   /// How lights are chosen; empty where none are.
   std::string_view light_sampler() const;
+  /// Where on a light its samples lie; empty where none are.
+  std::string_view light_technique() const;
 };
 
 const std::vector<Plugin>& integrator_plugins();
@@ -48,6 +50,10 @@ IntegratorSettings integrator_from_name(std::string_view name);
 /// The same with another light sampler, by the name that these rules have. Throws InputError for an unknown
 /// one, and where the integrator samples no lights.
 IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler);
+
+/// The same with light samples by another technique, of light_technique_from_name. Throws InputError for an
+/// unknown one, and where the integrator samples no lights.
+IntegratorSettings with_light_technique(const IntegratorSettings& integrator, std::string_view technique);
 
 /// The same with what it leaves to the scene decided: candidates are 1 where a cut of the light tree
 /// (lightsampler/light_cuts.h) has room for every facet and surfaces are diffuse,

@@ -80,6 +80,13 @@ class PathRules {
     if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.sampler = name;
     return changed;
   }
+  /// The same with another technique; light_samples() must not be null.
+  PathRules with_technique(LightTechnique technique) const {
+    PathRules changed = *this;
+    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.technique = technique;
+    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.technique = technique;
+    return changed;
+  }
 
   /// The same with so many candidates, everywhere unless `glossy` says how many where surfaces are not
   /// diffuse; light_samples() must not be null.

@@ -1,7 +1,6 @@
 // A convex polygon as a receiver sees it: a fan of triangles around its first corner.
 #pragma once
 
-#include "base/frame.h"
 #include "base/lane_vec.h"
 #include "base/lookup_table.h"
 #include "base/simd_math.h"
@@ -34,16 +33,6 @@ struct PolygonFan {
   int most;  ///< The greatest of `corners` among the lanes that ask.
 };
 
-/// The same with the frame's normal as z.
-template <class F>
-PolygonFan<F> in_frame(PolygonFan<F> fan, const Frame<F>& frame) {
-  fan.apex = frame.local_from_world(fan.apex);
-  for (std::size_t k = 1; k < std::size_t(fan.most); ++k)
-    fan.from_apex[k] = frame.local_from_world(fan.from_apex[k]);
-  fan.ng = frame.local_from_world(fan.ng);
-  return fan;
-}
-
 /// Polygons in memory, by row.
 class PolygonTable {
  public:
@@ -74,25 +63,39 @@ class PolygonTable {
                           const Mask<F>& is_twosided = F(0) > F(1)) const {
     const Int<F> safe = select(lanes, row, Int<F>(0));
     const Int<F> at = first_.at(safe);
-    const float* corner = corners_.data();
-    const Vec3<F> origin = gather_vec3<F>(corner, at);
+    // Packets often aim at one polygon, and a gather takes as long as a dozen additions.
+    const std::int32_t first_row = first_lane(safe);
+    const bool is_one = all(mask_or(equal(safe, Int<F>(first_row)), mask_not(lanes)));
+    const float* one = corners_.data() + first_[first_row];
+    const auto number = [&](int column, const Int<F>& there) {
+      return is_one ? F(one[column]) : gather(corners_.data(), there);
+    };
+    const auto place = [&](int column, const Int<F>& there) {
+      return Vec3<F>{number(column, there), number(column + 1, there + Int<F>(1)),
+                     number(column + 2, there + Int<F>(2))};
+    };
+    const Vec3<F> origin = place(0, at);
     PolygonFan<F> fan;
     fan.apex = origin - position;
-    fan.ng = gather_vec3<F>(normals_.data(), safe * Int<F>(3));
+    fan.area = number(3, at + Int<F>(3));
     fan.corners = count_.at(safe);
     fan.most = 3;
     while (fan.most < most_corners && any(mask_and(lanes, less(Int<F>(fan.most), fan.corners)))) ++fan.most;
     for (int k = 1; k < fan.most; ++k) {
-      const Int<F> there = at + select(less(Int<F>(k), fan.corners), Int<F>(4 * k), Int<F>(4));
-      fan.from_apex[std::size_t(k)] = gather_vec3<F>(corner, there);
-      fan.twice_area[std::size_t(k)] = select(less(Int<F>(k), fan.corners), gather(corner + 3, there), F(0));
+      const auto n = std::size_t(k);
+      const Mask<F> is_corner = less(Int<F>(k), fan.corners);
+      const Int<F> there = at + select(is_corner, Int<F>(4 * k), Int<F>(4));
+      fan.from_apex[n] = place(4 * k, there);
+      fan.twice_area[n] = select(is_corner, number(4 * k + 3, there + Int<F>(3)), F(0));
     }
+    const float* normal = normals_.data() + 3 * first_row;
+    fan.ng = is_one ? Vec3<F>{F(normal[0]), F(normal[1]), F(normal[2])}
+                    : gather_vec3<F>(normals_.data(), safe * Int<F>(3));
     const F height = -dot(fan.ng, fan.apex);
     const F rounding = F(0.25f) * clearance<F>(fan.ng, abs_each(origin) + abs_each(position), F(0));
     fan.is_turned = mask_and(is_twosided, height < F(0));
     fan.height = select(abs(height) > rounding, select(fan.is_turned, -height, height), F(0));
     fan.ng = select(fan.is_turned, -fan.ng, fan.ng);
-    fan.area = gather(corner + 3, at);
     return fan;
   }
 

@@ -1,6 +1,7 @@
 // A convex polygon that shines: samples by any technique, and their density.
 #pragma once
 
+#include "base/warp.h"
 #include "light/light_sample.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
@@ -63,7 +64,7 @@ class PolygonLight {
     Mask<F> by_solid_angle = mask_and(is_seen_, mask_not(by_area_));
     if (any(by_cosine_)) {
       const Frame<F> frame = receiver_frame();
-      const ProjectedPolygon<F> polygon(in_frame(fan_, frame));
+      const ProjectedPolygon<F> polygon(fan_, frame);
       const Mask<F> m = mask_and(by_cosine_, polygon.is_accurate());
       by_solid_angle = mask_and(by_solid_angle, mask_not(m));
       if (any(m)) {
@@ -86,7 +87,7 @@ class PolygonLight {
     Mask<F> by_solid_angle = mask_and(is_seen_, mask_not(by_area_));
     if (any(by_cosine_)) {
       const Frame<F> frame = receiver_frame();
-      const ProjectedPolygon<F> polygon(in_frame(fan_, frame));
+      const ProjectedPolygon<F> polygon(fan_, frame);
       const Mask<F> m = mask_and(by_cosine_, polygon.is_accurate());
       by_solid_angle = mask_and(by_solid_angle, mask_not(m));
       pdf = select(m, cosine_density(polygon, frame, hit.wi), pdf);

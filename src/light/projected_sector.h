@@ -21,24 +21,27 @@ class ProjectedSector {
   /// corner \param rise from the long side up to the middle corner (m), < 0 where the long side is the high
   /// one \param turn the z of the cross product of tip and middle corner (m^2), >= 0
   ProjectedSector(const Vec3<F>& tip, const Vec3<F>& to_middle, const F& rise, const F& turn) {
-    const F gap = abs(rise), tip_length = length(tip), inv_tip = F(1) / tip_length;
+    const F tip_length = length(tip);
     const Vec3<F> to_low{to_middle.x, to_middle.y, to_middle.z - max(rise, F(0))};
     const Vec3<F> to_high{to_middle.x, to_middle.y, to_middle.z - min(rise, F(0))};
     const F across_low = max(length(cross(tip, to_low)), F(tiny)),
             across_high = max(length(cross(tip, to_high)), F(tiny));
-    tip_ = tip * inv_tip;
-    const F along = dot(tip_, to_low), inv_across = tip_length / across_low;
-    tangent_ = (to_low - tip_ * along) * inv_across;
-    rise_ = gap * inv_across;
-    cos_low_ = turn / across_low;
+    const F inv_across_low = F(1) / across_low, stretch = tip_length * inv_across_low;
+    tip_ = tip * (F(1) / tip_length);
+    tangent_ = (to_low - tip_ * dot(tip_, to_low)) * stretch;
+    rise_ = abs(rise) * stretch;
+    cos_low_ = turn * inv_across_low;
     cos_high_ = turn / across_high;
-    sine_by_sine_ = across_high / across_low;
+    sine_by_sine_ = across_high * inv_across_low;
     angle_ = half_turn_angle(across_low, dot(tip, tip + to_low));
-    at_half_ = share_held(F(0.5f) * angle_);
-    at_end_ = share_held(angle_);
     constexpr float small = 0.03f;  // Where both ways of integrating are off by some 1e-5.
     is_small_ = mask_and(angle_ < F(small), rise_ * angle_ < F(small));
-    area_ = area_up_to(F(1));
+    const F high_angle = half_turn_angle(across_high, dot(tip, tip + to_high));
+    area_ = max(F(0.5f) * (cos_low_ * angle_ - cos_high_ * high_angle), F(0));
+    if (any(is_small_)) {
+      const F held_at_half = at(F(0.5f)).held, held_at_end = at(F(1)).held;
+      area_ = select(is_small_, area_by_parabola(F(1), held_at_half, held_at_end), area_);
+    }
   }
 
   const F& area() const { return area_; }  ///< The projected solid angle (sr).
@@ -46,11 +49,9 @@ class ProjectedSector {
   /// A direction, unit. \param u_area the share of the area between the tip's azimuth and its own
   /// \param u_height 0: on the low side, 1: on the high one
   Vec3<F> sample(const F& u_area, const F& u_height) const {
-    F sine, cosine;
-    sincos_half_turn(share_of_angle(u_area) * angle_, sine, cosine);
-    const Vec3<F> low = tip_ * cosine + tangent_ * sine;
-    const F inside = u_height * held(low.z, rise_ * sine);
-    const F across = sqrt(F(1) - inside);
+    const Place there = at(share_of_angle(u_area));
+    const F inside = u_height * there.held, across = sqrt(F(1) - inside);
+    const Vec3<F> low = tip_ * there.cosine + tangent_ * there.sine;
     return normalize(
         Vec3<F>{low.x * across, low.y * across, sqrt(low.z * low.z + (F(1) - low.z * low.z) * inside)});
   }
@@ -58,37 +59,41 @@ class ProjectedSector {
  private:
   static constexpr float tiny = 1e-30f;
 
-  /// Of the disk below the low side, what lies between both sides.
-  static F held(const F& z, const F& w) {
-    const F more = w * (F(2) * max(z, F(0)) + w);
-    return more / (F(1) + more);
-  }
-  F share_held(const F& angle) const {
-    F sine, cosine;
-    sincos_half_turn(angle, sine, cosine);
-    return held(tip_.z * cosine + tangent_.z * sine, rise_ * sine);
-  }
-
+  struct Place {
+    F sine, cosine;  ///< Of the angle from the tip.
+    F held;          ///< Of the disk below the low side, what lies between both sides.
+  };
   /// \param share of the angle
-  F area_up_to(const F& share) const {
-    // `held` by a parabola.
-    const F slope = F(4) * at_half_ - at_end_, bend = F(2) * at_end_ - F(4) * at_half_;
-    const F by_parabola =
-        F(0.5f) * cos_low_ * angle_ * share * share * (F(0.5f) * slope + F(1.0f / 3) * bend * share);
-    if (all(is_small_)) return by_parabola;
-    F sine, cosine;
-    const F angle = angle_ * share;
-    sincos_half_turn(angle, sine, cosine);
-    const F high_angle = half_turn_angle(sine_by_sine_ * sine, cosine + rise_ * tip_.z * sine);
-    return select(is_small_, by_parabola, max(F(0.5f) * (cos_low_ * angle - cos_high_ * high_angle), F(0)));
+  Place at(const F& share) const {
+    Place place;
+    sincos_half_turn(share * angle_, place.sine, place.cosine);
+    const F z = tip_.z * place.cosine + tangent_.z * place.sine, w = rise_ * place.sine;
+    const F more = w * (F(2) * max(z, F(0)) + w);
+    place.held = more / (F(1) + more);
+    return place;
   }
 
-  //// The inverse of area_up_to
+  F area_by_parabola(const F& share, const F& held_at_half, const F& held_at_end) const {
+    const F slope = F(4) * held_at_half - held_at_end, bend = F(2) * held_at_end - F(4) * held_at_half;
+    return F(0.5f) * cos_low_ * angle_ * share * share * (F(0.5f) * slope + F(1.0f / 3) * bend * share);
+  }
+  F area_by_arcs(const F& share, const Place& there) const {
+    const F high_angle =
+        half_turn_angle(sine_by_sine_ * there.sine, there.cosine + rise_ * tip_.z * there.sine);
+    return max(F(0.5f) * (cos_low_ * angle_ * share - cos_high_ * high_angle), F(0));
+  }
+
+  /// Before which a share u of the area lies: a guess from the middle, then Newton's method.
   F share_of_angle(const F& u) const {
+    const Place middle = at(F(0.5f)), end = at(F(1));
+    const auto area_up_to = [&](const F& share, const Place& there) {
+      const F by_parabola = area_by_parabola(share, middle.held, end.held);
+      return all(is_small_) ? by_parabola : select(is_small_, by_parabola, area_by_arcs(share, there));
+    };
     const F inv_area = F(1) / max(area_, F(tiny)), density = F(0.5f) * cos_low_ * angle_ * inv_area;
-    const F half = area_up_to(F(0.5f)) * inv_area;
-    const F inv_at_half = F(1) / max(density * at_half_, F(tiny)),
-            inv_at_end = F(1) / max(density * at_end_, F(tiny));
+    const F half = area_up_to(F(0.5f), middle) * inv_area;
+    const F inv_at_half = F(1) / max(density * middle.held, F(tiny)),
+            inv_at_end = F(1) / max(density * end.held, F(tiny));
     // Before the middle the area grows as between x^2 and x.
     const F root = sqrt(u / max(half, F(tiny))), growth = F(2) * half * inv_at_half;
     const F before = root * ((F(1) - growth) + (growth - F(0.5f)) * root);
@@ -98,11 +103,14 @@ class ProjectedSector {
         F(0.5f) + t * (rest * inv_at_half + t * (F(1.5f) - rest * (F(2) * inv_at_half + inv_at_end) +
                                                  t * (rest * (inv_at_half + inv_at_end) - F(1))));
     F share = max(min(select(u < half, min(before, F(0.5f)), max(behind, F(0.5f))), F(1)), F(0));
-    constexpr int steps = 2;
-    for (int step = 0; step < steps; ++step) {
-      const F excess = area_up_to(share) * inv_area - u;
-      const F next = share - excess / max(density * share_held(share * angle_), F(tiny));
+    constexpr int most_steps = 6;
+    for (int step = 0; step < most_steps; ++step) {
+      const Place there = at(share);
+      const F excess = area_up_to(share, there) * inv_area - u;
+      const F next = share - excess / max(density * there.held, F(tiny));
       share = select(next < F(0), share * F(0.5f), select(next > F(1), (share + F(1)) * F(0.5f), next));
+      constexpr float near = 1e-3f;  // Which the step has squared.
+      if (all(abs(excess) < F(near))) break;
     }
     return share;
   }
@@ -112,7 +120,6 @@ class ProjectedSector {
   F rise_;                 ///< Of the high side above the low one, over the sine of the angle.
   F cos_low_, cos_high_;   ///< Of the planes of both sides.
   F sine_by_sine_;         ///< Of the angles along the high and the low side, over the azimuth's.
-  F at_half_, at_end_;     ///< What is held at half of the angle and at all of it.
   F area_;
   Mask<F> is_small_;
 };

@@ -42,29 +42,23 @@ class ProjectedTriangle {
     const F steep = F(1e6f) * length(a);
     const F rise = min(height * length(cross(b, c)) / max(turn_long, F(1e-30f)), steep);
     rise_ = select(turn_to_begin > F(0), rise, -rise);
-    const ProjectedSector<F> sector = sector_at_begin();
-    begin_area_ = sector.area();
-    end_area_ = ProjectedSector<F>(end_, end_to_middle_, rise_, turn_end_).area();
+    begin_area_ = ProjectedSector<F>(begin_, begin_to_middle_, rise_, turn_begin_).area();
   }
 
-  F projected_solid_angle() const { return begin_area_ + end_area_; }
-
-  /// A direction, unit.
-  Vec3<F> sample(const Vec2<F>& u) const {
-    const F target = u.x * (begin_area_ + end_area_);
+  /// A direction, unit. \param projected_solid_angle of the triangle (sr)
+  Vec3<F> sample(const Vec2<F>& u, const F& projected_solid_angle) const {
+    const F target = u.x * projected_solid_angle;
     const Mask<F> is_begin = target < begin_area_;
     const ProjectedSector<F> sector(select(is_begin, begin_, end_),
                                     select(is_begin, begin_to_middle_, end_to_middle_), rise_,
                                     select(is_begin, turn_begin_, turn_end_));
-    const F share = select(is_begin, target / max(begin_area_, F(1e-30f)),
-                           F(1) - (target - begin_area_) / max(end_area_, F(1e-30f)));
+    const F share =
+        select(is_begin, target / max(begin_area_, F(1e-30f)),
+               F(1) - (target - begin_area_) / max(projected_solid_angle - begin_area_, F(1e-30f)));
     return sector.sample(max(min(share, F(1)), F(0)), u.y);
   }
 
  private:
-  ProjectedSector<F> sector_at_begin() const {
-    return ProjectedSector<F>(begin_, begin_to_middle_, rise_, turn_begin_);
-  }
   /// The z of cross(place, place + along).
   static F turn(const Vec3<F>& place, const Vec3<F>& along) { return place.x * along.y - place.y * along.x; }
   static Mask<F> differ(const Mask<F>& a, const Mask<F>& b) {
@@ -73,7 +67,7 @@ class ProjectedTriangle {
 
   Vec3<F> begin_, end_;  ///< Of the long side.
   Vec3<F> begin_to_middle_, end_to_middle_;
-  F rise_, turn_begin_, turn_end_, begin_area_, end_area_;
+  F rise_, turn_begin_, turn_end_, begin_area_;
 };
 
 }  // namespace etendue

@@ -1,16 +1,23 @@
 // How a light sample finds its place on the light that has been chosen.
 #pragma once
 
+#include <string_view>
+
 namespace etendue {
 
-/// Of polygons: the facets of meshes, and rectangles. Spheres are sampled by solid angle, disks by area,
+/// Of polygons: the facets of meshes, and rectangles. Spheres are sampled by solid angle and disks by area,
 /// whatever is asked for.
-///   area: a point uniform on the surface, as the course handouts have it.
+///   area: a point uniform on the surface, as course handouts have it.
 ///   solid_angle: a direction uniform among those in which the receiver sees the polygon.
-///   projected_solid_angle: a direction with density in proportion to the cosine at the receiver; where it
-///   scatters
-///     to both sides, or float cannot (ProjectedPolygon::is_accurate), by solid angle.
-///   automatic: by area where the polygon is small for its distance, else by projected solid angle.
+///   projected_solid_angle: a direction with density in proportion to the cosine at the receiver; where light
+///   is
+///     scattered from both sides, and where floats cannot (ProjectedPolygon::is_accurate), as solid_angle.
+///   automatic: as area where the polygon is small for its distance, else as projected_solid_angle.
 enum class LightTechnique { area, solid_angle, projected_solid_angle, automatic };
+
+/// area, solid_angle, projected or auto.
+std::string_view light_technique_name(LightTechnique technique);
+/// Throws InputError with the known names.
+LightTechnique light_technique_from_name(std::string_view name);
 
 }  // namespace etendue

@@ -111,7 +111,7 @@ TEST(LightTechniques, PutSamplesWhereTheirDensitySays) {
       PolygonTable table;
       const PolygonFan<float> fan = table.seen_from<float>(c.position, table.add(c.corners), true);
       const Frame<float> frame(c.ns);
-      const ProjectedPolygon<float> projected(in_frame(fan, frame));
+      const ProjectedPolygon<float> projected(fan, frame);
       // Where rounding moves samples by less than the test would find.
       if (!(fan.height > 0) || !projected.is_accurate() || !(c.condition() < 3000)) continue;
       ++found;

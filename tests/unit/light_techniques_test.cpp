@@ -24,7 +24,7 @@ PolygonFan<float> fan_of(const PolygonCase& c) {
 }
 
 ProjectedPolygon<float> projected(const PolygonCase& c) {
-  return ProjectedPolygon<float>(in_frame(fan_of(c), Frame<float>(c.ns)));
+  return ProjectedPolygon<float>(fan_of(c), Frame<float>(c.ns));
 }
 
 /// Those with an area and a receiver in front of it.
@@ -85,7 +85,7 @@ TEST_P(PolygonKind, IsWhereItsSamplesLie) {
     const PolygonFan<float> fan = fan_of(c);
     const Frame<float> frame(c.ns);
     const SphericalPolygon<float> spherical(fan);
-    const ProjectedPolygon<float> cosine(in_frame(fan, frame));
+    const ProjectedPolygon<float> cosine(fan, frame);
     const Outline outline = c.outline();
     // By how much a direction (unit) is outside of the planes through the sides.
     const auto outside = [&](const Vec3f& direction) {
