@@ -11,6 +11,7 @@
 #include "scene/load_light.h"
 #include "scene/load_shape.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -47,6 +48,18 @@ Json describe(const std::vector<Plugin>& plugins) {
   return all;
 }
 
+/// With what each does that no option changes, on one line; of one that only a file can name, nothing.
+Json describe_integrators() {
+  Json all = describe(integrator_plugins());
+  for (Json& plugin : all) {
+    const auto& parameters = plugin["parameters"];
+    if (std::none_of(parameters.begin(), parameters.end(),
+                     [](const Json& parameter) { return parameter["is_required"].get<bool>(); }))
+      plugin["by_default"] = describe(integrator_from_name(plugin["name"].get<std::string>()));
+  }
+  return all;
+}
+
 /// From the names and releases that the build found, in turn.
 Json dependency_versions() {
   Json versions = Json::object();
@@ -64,7 +77,7 @@ Json describe_program() {
   json["instruction_sets"] = isas;
   json["threads"] = available_threads();
   json["dependencies"] = dependency_versions();
-  json["integrators"] = describe(integrator_plugins());
+  json["integrators"] = describe_integrators();
   json["light_samplers"] = describe(light_sampler_plugins());
   json["samplers"] = describe(sampler_plugins());
   json["cameras"] = describe(camera_plugins());
@@ -92,6 +105,8 @@ void print(const Json& json) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());
+      if (plugin.contains("by_default"))
+        fmt::print("    by default: {}\n", plugin["by_default"].get<std::string>());
       for (const Json& parameter : plugin["parameters"]) {
         const auto text = [&](const char* key) { return parameter[key].get<std::string>(); };
         const std::string unit = text("unit").empty() ? "" : " " + text("unit");

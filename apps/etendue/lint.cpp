@@ -43,10 +43,8 @@ int run(const LintOptions& options) {
     check_overwrites_nothing({options.json_file}, files_of(description, options.render.scene_file));
   }
   LoadedScene loaded = load_scene(description);
-  IntegratorSettings integrator =
-      integrator_for(options.render, loaded, description.dialect, loaded.warnings);
-  if (!options.render.light_sampler.empty())
-    integrator = with_light_sampler(integrator, options.render.light_sampler);
+  const IntegratorSettings integrator =
+      integrator_for(options.render.integrator, loaded, description.dialect, loaded.warnings);
   if (integrator.needs_lights()) check_has_light(description, loaded.scene);
   const int samples = options.render.samples_per_pixel.value_or(loaded.samples_per_pixel);
   const std::vector<Finding> findings = lint({loaded.scene, loaded.places, integrator, samples}, thorough);
@@ -79,10 +77,8 @@ void add_lint_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<LintOptions>();
   command->add_option("SCENE", options->render.scene_file, "Scene file (XML of the Nori family)")->required();
   command->add_option("--json", options->json_file, "JSON file with all findings")->allow_extra_args(false);
-  command->add_option("--integrator", options->render.integrator,
-                      "With which it is to be rendered, instead of the file's");
-  command->add_option("--light-sampler", options->render.light_sampler, "The same of the light sampler");
-  command->add_option("--spp", options->render.samples_per_pixel, "The same of the samples a pixel")
+  add_integrator_options(*command, options->render.integrator);
+  command->add_option("--spp", options->render.samples_per_pixel, "Samples a pixel, instead of the file's")
       ->check(whole_number(std::numeric_limits<int>::max()));
   command->add_option("--dialect", options->render.run.dialect_name,
                       "nori-2012, nori-eth or nori, instead of what the file tells");

@@ -64,11 +64,8 @@ int run(const RenderOptions& options) {
   LoadedScene loaded = load_scene(description, loading);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
-  settings.integrator = integrator_for(options, loaded, description.dialect, loaded.warnings);
-  if (!options.light_sampler.empty())
-    settings.integrator = with_light_sampler(settings.integrator, options.light_sampler);
-  if (!options.technique.empty())
-    settings.integrator = with_light_technique(settings.integrator, options.technique);
+  settings.integrator = settled(
+      integrator_for(options.integrator, loaded, description.dialect, loaded.warnings), loaded.scene.lights);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   check_settings(settings);
   const LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};

@@ -24,7 +24,62 @@ std::string shell_quoted(const std::string& text) {
   return quoted + "'";
 }
 
+/// The command line's integrator where it names one, else the file's, else `path`.
+IntegratorSettings integrator_named(const std::string& name, const LoadedScene& loaded, Dialect dialect,
+                                    std::vector<std::string>& warnings) {
+  const Object& in_file = loaded.integrator;
+  if (in_file.family.empty()) return integrator_from_name(name.empty() ? "path" : name);
+  const auto pass_over = [&](const std::string& why) {
+    const IntegratorSettings asked = integrator_from_name(name);
+    warnings.push_back(
+        format_message(in_file.type_location, why, "taken in its place: --integrator " + name));
+    return asked;
+  };
+  if (!name.empty() && !is_known(in_file))
+    return pass_over(fmt::format("unknown integrator '{}'", in_file.type));
+  std::vector<UnreadKey> unread;
+  IntegratorSettings own;
+  try {
+    own = make_integrator(in_file, dialect, unread);
+  } catch (const InputError&) {
+    if (name.empty()) throw;
+    return name == in_file.type ? pass_over("this integrator has a key that is missing or bad")
+                                : integrator_from_name(name);
+  }
+  const bool is_named_so = name == in_file.type && !own.needs_lights();
+  if (!name.empty() && !is_named_so) {
+    const IntegratorSettings asked = integrator_from_name(name);
+    if (asked.name != own.name) return asked;
+  }
+  for (const UnreadKey& key : unread) warnings.push_back(key.message);
+  return own;
+}
+
 }  // namespace
+
+void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
+  const auto number = whole_number(std::numeric_limits<int>::max());
+  command.add_option("--integrator", options.name,
+                     "Instead of the file's; where neither names one, path. See etendue info");
+  command.add_option("--light-sampler", options.light_sampler,
+                     "How lights are chosen, instead of the integrator's way: uniform, power, all or tree");
+  command.add_option("--technique", options.technique,
+                     "Where on a polygon light samples lie, instead of the integrator's way: area, "
+                     "solid_angle, projected or auto");
+  command
+      .add_option("--candidates", options.candidates,
+                  "Of how many candidates each light sample at the first vertex is one, chosen by what they "
+                  "would add; 1 to 1024 [path, direct_light: what suits the scene's lights; others: 1]")
+      ->check(number);
+  command
+      .add_option("--shadow-rays", options.shadow_rays,
+                  "Light samples at the first vertex, each with a shadow ray; 1 to 65536 [path, "
+                  "direct_light: 4; others: 1]")
+      ->check(number);
+  command.add_option("--weights", options.heuristic,
+                     "How light samples and BSDF samples share light that both find: balance or power "
+                     "[balance, or the file's]");
+}
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("SCENE", options.scene_file, "Scene file (XML of the Nori family)")->required();
@@ -32,13 +87,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       .add_option("-o,--output", options.outputs,
                   "Image to write, .exr (radiance and its standard error) or .png (sRGB); may be repeated")
       ->allow_extra_args(false);
-  command.add_option("--integrator", options.integrator, "Instead of the file's; see etendue info");
   command.add_option("--sampler", options.sampler, "Instead of the file's: independent or sobol");
-  command.add_option("--light-sampler", options.light_sampler,
-                     "How lights are chosen, instead of the integrator's way: uniform, power or all");
-  command.add_option("--technique", options.technique,
-                     "Where on a polygon light samples lie, instead of the integrator's way: area, "
-                     "solid_angle, projected or auto");
+  add_integrator_options(command, options.integrator);
   command.add_option("--spp", options.samples_per_pixel, "Samples a pixel in all, instead of the file's")
       ->check(whole_number(std::numeric_limits<int>::max()));
   command
@@ -82,35 +132,15 @@ RenderSettings settings_for(const RenderOptions& options, const LoadedScene& loa
   return settings;
 }
 
-IntegratorSettings integrator_for(const RenderOptions& options, const LoadedScene& loaded, Dialect dialect,
-                                  std::vector<std::string>& warnings) {
-  const std::string& name = options.integrator;
-  const Object& in_file = loaded.integrator;
-  if (in_file.family.empty()) return name.empty() ? IntegratorSettings{} : integrator_from_name(name);
-  const auto pass_over = [&](const std::string& why) {
-    const IntegratorSettings asked = integrator_from_name(name);
-    warnings.push_back(
-        format_message(in_file.type_location, why, "taken in its place: --integrator " + name));
-    return asked;
-  };
-  if (!name.empty() && !is_known(in_file))
-    return pass_over(fmt::format("unknown integrator '{}'", in_file.type));
-  std::vector<UnreadKey> unread;
-  IntegratorSettings own;
-  try {
-    own = make_integrator(in_file, dialect, unread);
-  } catch (const InputError&) {
-    if (name.empty()) throw;
-    return name == in_file.type ? pass_over("this integrator has a key that is missing or bad")
-                                : integrator_from_name(name);
-  }
-  const bool is_named_so = name == in_file.type && !own.needs_lights();
-  if (!name.empty() && !is_named_so) {
-    const IntegratorSettings asked = integrator_from_name(name);
-    if (asked.name != own.name) return asked;
-  }
-  for (const UnreadKey& key : unread) warnings.push_back(key.message);
-  return own;
+IntegratorSettings integrator_for(const IntegratorOptions& options, const LoadedScene& loaded,
+                                  Dialect dialect, std::vector<std::string>& warnings) {
+  IntegratorSettings settings = integrator_named(options.name, loaded, dialect, warnings);
+  if (!options.light_sampler.empty()) settings = with_light_sampler(settings, options.light_sampler);
+  if (!options.technique.empty()) settings = with_light_technique(settings, options.technique);
+  if (options.candidates) settings = with_candidates(settings, *options.candidates);
+  if (options.shadow_rays) settings = with_shadow_rays(settings, *options.shadow_rays);
+  if (!options.heuristic.empty()) settings = with_heuristic(settings, options.heuristic);
+  return settings;
 }
 
 std::string replay_command(const RenderOptions& options, const InvalidSample& sample) {
@@ -118,10 +148,14 @@ std::string replay_command(const RenderOptions& options, const InvalidSample& sa
   const auto add = [&](std::string_view option, const auto& value) {
     command += fmt::format(" {} {}", option, value);
   };
-  if (!options.integrator.empty()) add("--integrator", options.integrator);
+  const IntegratorOptions& integrator = options.integrator;
+  if (!integrator.name.empty()) add("--integrator", integrator.name);
   if (!options.sampler.empty()) add("--sampler", options.sampler);
-  if (!options.light_sampler.empty()) add("--light-sampler", options.light_sampler);
-  if (!options.technique.empty()) add("--technique", options.technique);
+  if (!integrator.light_sampler.empty()) add("--light-sampler", integrator.light_sampler);
+  if (!integrator.technique.empty()) add("--technique", integrator.technique);
+  if (integrator.candidates) add("--candidates", *integrator.candidates);
+  if (integrator.shadow_rays) add("--shadow-rays", *integrator.shadow_rays);
+  if (!integrator.heuristic.empty()) add("--weights", integrator.heuristic);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
   if (options.replicates) add("--replicates", *options.replicates);
   if (!options.replicates_by.empty()) add("--replicates-by", options.replicates_by);

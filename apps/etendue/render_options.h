@@ -12,14 +12,24 @@
 
 namespace etendue::app {
 
+/// Which integrator, and what it is to do in another way than by itself.
+struct IntegratorOptions {
+  std::string name, light_sampler, technique, heuristic;
+  std::optional<int> candidates, shadow_rays;
+};
+
 struct RenderOptions {
   std::string scene_file;
   std::vector<std::string> outputs;
-  std::string integrator, sampler, light_sampler, technique, replicates_by, stats_file, replay;
+  std::string sampler, replicates_by, stats_file, replay;
   std::optional<int> samples_per_pixel, replicates;
+  IntegratorOptions integrator;
   RunOptions run;
   bool is_quiet = false, is_strict = false, is_in_sample_order = false, is_watertight = false;
 };
+
+/// Adds --integrator and the options that change it. `options` must live as long as the command.
+void add_integrator_options(CLI::App& command, IntegratorOptions& options);
 
 /// `options` must live as long as the command.
 void add_render_options(CLI::App& command, RenderOptions& options);
@@ -27,11 +37,12 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 /// All but the integrator. Throws InputError with the option that does not fit.
 RenderSettings settings_for(const RenderOptions& options, const LoadedScene& loaded);
 
-/// The command line's integrator where it names one; the file's parameters hold where both mean the same.
-/// What is wrong with the file's integrator then does not matter. \param warnings gets what was passed over,
-/// and keys that nobody read
-IntegratorSettings integrator_for(const RenderOptions& options, const LoadedScene& loaded, Dialect dialect,
-                                  std::vector<std::string>& warnings);
+/// The command line's integrator where it names one, else the file's, else `path`; the file's parameters hold
+/// where both name the same. What is wrong with the file's integrator does not matter where the command line
+/// names another. Throws InputError with what the options ask for and the integrator cannot do.
+/// \param warnings gets what was passed over, and keys that nobody read
+IntegratorSettings integrator_for(const IntegratorOptions& options, const LoadedScene& loaded,
+                                  Dialect dialect, std::vector<std::string>& warnings);
 
 /// The command line that computes the same samples as this one, for one of them.
 std::string replay_command(const RenderOptions& options, const InvalidSample& sample);

@@ -62,6 +62,11 @@ PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(h
 PathRules direct_light_rules(Heuristic heuristic) { return PathRules::direct(best_rules(heuristic)); }
 
 constexpr Row table[]{
+    {"path", "path",
+     "Paths with any number of bounces, with the best that has been measured of light samples.",
+     Keys::heuristic, path_rules},
+    {"direct_light", "direct_light", "Direct light, with the best that has been measured of light samples.",
+     Keys::heuristic, direct_light_rules},
     {"light", "light",
      "Area sampling: each sample takes one point on one light. Its variance has no bound where a lit "
      "surface meets the light.",
@@ -79,11 +84,6 @@ constexpr Row table[]{
      Keys::none, every_light_rules},
     {"whitted", "whitted", "Light samples, seen through mirrors and smooth dielectrics too.", Keys::none,
      whitted_rules},
-    {"path", "path",
-     "Paths with any number of bounces, with the best that has been measured of light samples.",
-     Keys::heuristic, path_rules},
-    {"direct_light", "direct_light", "Direct light, with the best that has been measured of light samples.",
-     Keys::heuristic, direct_light_rules},
     {"path_ems", "path_ems",
      "Paths with any number of bounces; at each, direct light by light samples. The variance has no bound "
      "where lit or shining surfaces meet a light.",
@@ -112,20 +112,39 @@ const Row* find(std::string_view name) {
   return row == std::end(table) ? nullptr : row;
 }
 
-Heuristic heuristic_of(const Parameters& parameters) {
-  const std::string heuristic = parameters.text("heuristic");
-  if (heuristic != "balance" && heuristic != "power")
-    throw InputError(parameters.location("heuristic"), "unknown heuristic '" + heuristic + "'",
-                     known_names(heuristic, {"balance", "power"}));
-  return heuristic == "power" ? Heuristic::power : Heuristic::balance;
+Heuristic heuristic_named(std::string_view name, const Location& where) {
+  if (name == "balance") return Heuristic::balance;
+  if (name == "power") return Heuristic::power;
+  throw InputError(where, fmt::format("unknown heuristic '{}'", name),
+                   known_names(name, {"balance", "power"}));
 }
+Heuristic heuristic_of(const Parameters& parameters) {
+  return heuristic_named(parameters.text("heuristic"), parameters.location("heuristic"));
+}
+
+constexpr std::string_view samplers_of_lights = "take path, direct_light, light, mis, path_ems or path_mis";
+
+/// \param what is asked of them. Throws InputError where the integrator takes none.
+const LightSamples& light_samples_of(const IntegratorSettings& integrator, std::string_view what) {
+  const PathRules* rules = integrator.path_rules();
+  if (!rules || !rules->light_samples())
+    throw InputError(fmt::format("{}: the integrator {} takes no samples of the lights\n{}", what,
+                                 integrator.name, samplers_of_lights));
+  return *rules->light_samples();
+}
+
+void check_range(int number, std::string_view what, int most) {
+  if (number < 1 || number > most)
+    throw InputError(fmt::format("{} {}; expected from 1 to {}", number, what, most));
+}
+
+constexpr int most_samples_of_a_kind = 1 << 16;  ///< Light samples, or BSDF samples, of the first vertex.
 
 int sample_count(const Parameters& parameters, std::string_view name) {
   const int count = parameters.integer(name);
-  constexpr int most = 1 << 16;
-  if (count < 0 || count > most)
+  if (count < 0 || count > most_samples_of_a_kind)
     throw InputError(parameters.location(name),
-                     fmt::format("'{}' is {}; it must be from 0 to {}", name, count, most));
+                     fmt::format("'{}' is {}; it must be from 0 to {}", name, count, most_samples_of_a_kind));
   return count;
 }
 
@@ -144,7 +163,8 @@ std::string_view name_of(Heuristic heuristic) {
 std::string text_of(const LightSamples& lights) {
   std::string text = fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
   if (lights.later_count > 0) text += fmt::format(" later_light_samples={}", lights.later_count);
-  if (lights.candidates != 1) text += fmt::format(" candidates={}", lights.candidates);
+  if (lights.candidates == 0) text += " candidates=by_scene";
+  if (lights.candidates > 1) text += fmt::format(" candidates={}", lights.candidates);
   if (lights.technique != LightTechnique::area)
     text += fmt::format(" technique={}", light_technique_name(lights.technique));
   return text;
@@ -245,13 +265,10 @@ IntegratorSettings integrator_from_name(std::string_view name) {
 
 IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler) {
   const std::string_view name = known_light_sampler(light_sampler);
-  if (integrator.light_sampler().empty())
-    throw InputError(
-        fmt::format("light sampler '{}': the integrator {} takes no samples of the lights\n"
-                    "take light, mis, path_ems or path_mis",
-                    name, integrator.name));
+  LightSamples lights = light_samples_of(integrator, fmt::format("light sampler '{}'", name));
+  lights.sampler = name;
   // These rules may have a name of their own: every_light is light with the sampler `all`.
-  const PathRules rules = integrator.path_rules()->with_light_sampler(name);
+  const PathRules rules = integrator.path_rules()->with_light_samples(lights);
   const auto* row = std::find_if(std::begin(table), std::end(table), [&](const Row& candidate) {
     return candidate.rules(Heuristic::balance) == rules;
   });
@@ -260,12 +277,34 @@ IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std:
 
 IntegratorSettings with_light_technique(const IntegratorSettings& integrator, std::string_view technique) {
   const LightTechnique known = light_technique_from_name(technique);
-  if (integrator.light_sampler().empty())
+  LightSamples lights = light_samples_of(integrator, fmt::format("technique '{}'", technique));
+  lights.technique = known;
+  return {integrator.name, integrator.path_rules()->with_light_samples(lights)};
+}
+
+IntegratorSettings with_candidates(const IntegratorSettings& integrator, int candidates) {
+  LightSamples lights = light_samples_of(integrator, fmt::format("{} candidates", candidates));
+  check_range(candidates, "candidates", 1 << 10);
+  lights.candidates = candidates;
+  return {integrator.name, integrator.path_rules()->with_light_samples(lights)};
+}
+
+IntegratorSettings with_shadow_rays(const IntegratorSettings& integrator, int shadow_rays) {
+  LightSamples lights = light_samples_of(integrator, fmt::format("{} shadow rays", shadow_rays));
+  check_range(shadow_rays, "shadow rays", most_samples_of_a_kind);
+  if (lights.later_count == 0) lights.later_count = lights.count;
+  lights.count = shadow_rays;
+  return {integrator.name, integrator.path_rules()->with_light_samples(lights)};
+}
+
+IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::string_view heuristic) {
+  const Heuristic named = heuristic_named(heuristic, {});
+  if (heuristic_name(integrator).empty())
     throw InputError(
-        fmt::format("technique '{}': the integrator {} takes no samples of the lights\n"
-                    "take light, mis, path_ems or path_mis",
-                    technique, integrator.name));
-  return {integrator.name, integrator.path_rules()->with_technique(known)};
+        fmt::format("weights by '{}': the integrator {} does not weigh light samples against BSDF samples\n"
+                    "take path, direct_light, mis or path_mis",
+                    heuristic, integrator.name));
+  return {integrator.name, integrator.path_rules()->with_heuristic(named)};
 }
 
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights) {
@@ -277,7 +316,10 @@ IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& l
   // candidates than it could make them, unless lobes are narrow.
   constexpr int several = 4;
   const bool are_all_in_cut = facets <= LightCut::most_clusters;
-  return {integrator.name, rules->with_candidates(are_all_in_cut ? 1 : several, several)};
+  LightSamples samples = *rules->light_samples();
+  samples.candidates = are_all_in_cut ? 1 : several;
+  samples.glossy_candidates = several;
+  return {integrator.name, rules->with_light_samples(samples)};
 }
 
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights) {
@@ -289,8 +331,8 @@ std::string unseen_lights(const IntegratorSettings& integrator, int dirac_lights
   if (dirac_lights == 0 || !integrator.needs_lights() || integrator.path_rules()->light_samples()) return "";
   return fmt::format(
       "{} samples no lights, so {} point, spot or directional light{} will not shine\n"
-      "take light, mis, path_ems or path_mis",
-      integrator.name, dirac_lights, dirac_lights == 1 ? "" : "s");
+      "{}",
+      integrator.name, dirac_lights, dirac_lights == 1 ? "" : "s", samplers_of_lights);
 }
 
 }  // namespace etendue

@@ -50,6 +50,15 @@ IntegratorSettings integrator_from_name(std::string_view name);
 /// The same with another light sampler, by the name that these rules have. Throws InputError for an unknown
 /// one, and where the integrator samples no lights.
 IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler);
+/// The same with each light sample of the first vertex one of so many candidates, 1 to 1024. Throws
+/// InputError for other numbers, and where the integrator samples no lights.
+IntegratorSettings with_candidates(const IntegratorSettings& integrator, int candidates);
+/// The same with so many light samples at the first vertex, 1 to 65536; those behind take as many as before.
+/// Throws InputError for other numbers, and where the integrator samples no lights.
+IntegratorSettings with_shadow_rays(const IntegratorSettings& integrator, int shadow_rays);
+/// The same with weights by "balance" or "power". Throws InputError for another name, and where the weights
+/// of the integrator do not depend on densities.
+IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::string_view heuristic);
 
 /// The same with light samples by another technique, of light_technique_from_name. Throws InputError for an
 /// unknown one, and where the integrator samples no lights.

@@ -73,38 +73,17 @@ class PathRules {
     if (const auto* by = std::get_if<ByBoth>(&direct_light_)) return &by->lights;
     return nullptr;
   }
-  /// The same rules with another light sampler; light_samples() must not be null.
-  PathRules with_light_sampler(std::string_view name) const {
+  /// The same rules with other samples of the lights; light_samples() must not be null.
+  PathRules with_light_samples(const LightSamples& lights) const {
     PathRules changed = *this;
-    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.sampler = name;
-    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.sampler = name;
+    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights = lights;
+    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights = lights;
     return changed;
   }
-  /// The same with another technique; light_samples() must not be null.
-  PathRules with_technique(LightTechnique technique) const {
+  /// The same rules with another heuristic; heuristic() must not be null.
+  PathRules with_heuristic(Heuristic heuristic) const {
     PathRules changed = *this;
-    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.technique = technique;
-    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.technique = technique;
-    return changed;
-  }
-
-  /// The same with so many candidates, everywhere unless `glossy` says how many where surfaces are not
-  /// diffuse; light_samples() must not be null.
-  PathRules with_candidates(int candidates, int glossy = 0) const {
-    PathRules changed = *this;
-    const auto set = [&](LightSamples& lights) {
-      lights.candidates = candidates;
-      lights.glossy_candidates = glossy;
-    };
-    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) set(by->lights);
-    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) set(by->lights);
-    return changed;
-  }
-  /// The same with so many light samples at the first vertex; light_samples() must not be null.
-  PathRules with_light_count(int count) const {
-    PathRules changed = *this;
-    if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights.count = count;
-    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights.count = count;
+    std::get<ByBoth>(changed.direct_light_).heuristic = heuristic;
     return changed;
   }
 

@@ -16,7 +16,7 @@ struct alignas(64) LightCluster {
   float radius_sq;
   Vec3f axis;                ///< Unit; of the cone of normals, from which each shines up to a right angle.
   float cos_normals;         ///< Of the cone's half angle; -1: every direction.
-  float power;               ///< W
+  float power;               ///< Relative to that of all lights with a place.
   std::int32_t first_child;  ///< The other stands behind it; 0: a leaf.
   std::int32_t parent;
   std::int32_t begin, end;  ///< Its facets, by their places in the tree.
@@ -54,7 +54,7 @@ F cos_of_difference(const F& cos_a, const F& cos_b, const F& sin_b) {
 
 template <class F>
 struct Importance {
-  F value;      ///< W/m^2
+  F value;      ///< 1/m^2, as powers are relative.
   F spread_sq;  ///< The square of the sine of the angle between the cluster's centre and edge; 1 inside.
   Vec3<F> wi;   ///< To its centre, unit.
 };

@@ -20,7 +20,8 @@ struct Facet {
   Vec3f center;  ///< Of its box.
   float radius;
   Vec3f axis;
-  float cos_normals, power;
+  float cos_normals;
+  double power;
 };
 
 float component(const Vec3f& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
@@ -186,7 +187,7 @@ Facet facet_of(const Lights& lights, const LightFacet& id, const LightBounds& bo
           length(bounds.box.high - center),
           bounds.axis,
           bounds.cos_emission < 0 ? -1 : bounds.cos_normals,
-          float(lights.facet_power(id.light, id.facet))};
+          lights.facet_power(id.light, id.facet)};
 }
 
 }  // namespace
@@ -213,12 +214,11 @@ LightTree::LightTree(const Lights& lights) {
   if (facets.empty()) return;
   double total = 0;
   for (const Facet& facet : facets) total += facet.power;
-  // Of little power is not of none: a facet that is never chosen would be missing.
+  // Relative to all, as floats cannot hold every power. Of little power is not of none: a facet that is never
+  // chosen would be missing.
   constexpr double least_share = 0x1p-28;
   for (Facet& facet : facets)
-    facet.power = total == 0        ? 1.0f
-                  : facet.power > 0 ? float(std::max(double(facet.power), least_share * total))
-                                    : 0;
+    facet.power = total == 0 ? 1.0 : facet.power > 0 ? std::max(facet.power / total, least_share) : 0;
 
   clusters_ = Builder(facets).clusters();
   places_.resize(facets.size());

@@ -151,6 +151,44 @@ TEST(LightSamplerOfAnIntegrator, IsUniformUnlessAskedForAnother) {
                 HasSubstr("takes no samples of the lights"));
 }
 
+TEST(LightSamplesOfAnIntegrator, AreAsManyAsAskedForAtTheFirstVertex) {
+  const IntegratorSettings paths = with_shadow_rays(integrator_from_name("path_mis"), 5),
+                           candidates = with_candidates(paths, 7);
+  EXPECT_EQ(paths.name, "path_mis");
+  EXPECT_EQ(rules_of(paths).light_count(0), 5);
+  EXPECT_EQ(rules_of(paths).light_count(1), 1);
+  EXPECT_EQ(rules_of(paths).candidates(0), 1);
+  EXPECT_EQ(rules_of(candidates).candidates(0), 7);
+  EXPECT_EQ(rules_of(candidates).candidates(1), 1);
+  EXPECT_EQ(rules_of(candidates).light_draws(0), 35);
+  for (const int number : {0, -1, 65537})
+    EXPECT_THAT(test::error_of([&] { with_shadow_rays(integrator_from_name("light"), number); }),
+                HasSubstr("expected from 1 to 65536"));
+  for (const int number : {0, -1, 1025})
+    EXPECT_THAT(test::error_of([&] { with_candidates(integrator_from_name("light"), number); }),
+                HasSubstr("expected from 1 to 1024"));
+  for (const char* name : {"direct", "path_mats", "normals"}) {
+    EXPECT_THAT(test::error_of([&] { with_shadow_rays(integrator_from_name(name), 2); }),
+                HasSubstr("takes no samples of the lights"));
+    EXPECT_THAT(test::error_of([&] { with_candidates(integrator_from_name(name), 2); }),
+                HasSubstr("takes no samples of the lights"));
+  }
+}
+
+TEST(HeuristicOfAnIntegrator, IsThatAskedForWhereThereIsOne) {
+  for (const char* name : {"mis", "path_mis", "path", "direct_light"}) {
+    const IntegratorSettings power = with_heuristic(integrator_from_name(name), "power");
+    EXPECT_EQ(power.name, name);
+    EXPECT_EQ(heuristic_name(power), "power");
+    EXPECT_EQ(rules_of(with_heuristic(power, "balance")), rules_of(integrator_from_name(name)));
+  }
+  for (const char* name : {"light", "direct", "average", "normals"})
+    EXPECT_THAT(test::error_of([&] { with_heuristic(integrator_from_name(name), "power"); }),
+                HasSubstr("does not weigh"));
+  EXPECT_THAT(test::error_of([] { with_heuristic(integrator_from_name("mis"), "powr"); }),
+              testing::AllOf(HasSubstr("unknown heuristic 'powr'"), HasSubstr("did you mean 'power'?")));
+}
+
 TEST(IntegratorKeys, ThatAreWrongAreExplained) {
   EXPECT_THAT(error_of("direct", Dialect::nori, text_xml("samplingMethod", "emiter")),
               testing::AllOf(HasSubstr("s.xml:3:38: unknown samplingMethod 'emiter'"), HasSubstr("^~~~~~"),
