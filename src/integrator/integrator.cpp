@@ -286,6 +286,7 @@ IntegratorSettings with_candidates(const IntegratorSettings& integrator, int can
   LightSamples lights = light_samples_of(integrator, fmt::format("{} candidates", candidates));
   check_range(candidates, "candidates", 1 << 10);
   lights.candidates = candidates;
+  lights.glossy_candidates = 0;
   return {integrator.name, integrator.path_rules()->with_light_samples(lights)};
 }
 
