@@ -2,10 +2,10 @@
 // and that hits have the density of the samples that find them.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its tests), fixed seeds.
-// Seen to fail when: the share of a facet is left out of a sample or of a hit's density; facets are numbered
-// as triangles; the back of a two-sided polygon is seen as its front; the frame is not turned there; light
-// from behind the receiver's normal counts; a fan's triangle is chosen uniformly; the technique of a hit is
-// another one.
+// Seen to fail when: the share of a facet is left out of a sample's density; facets are numbered as
+// triangles; the back of a polygon is always seen as its front; the frame is not turned there; receivers that
+// scatter from both sides get the cosine's density; a fan's triangles are chosen with wrong shares; hits have
+// the density of another technique.
 #include "light/light.h"
 #include "polygon_cases.h"
 #include "stats/running.h"
