@@ -1,10 +1,11 @@
 // Samples of convex polygons by solid angle and by projected solid angle fall where they should.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its tests), fixed seeds.
-// Seen to fail when: a triangle is chosen by its area; what is left of u is not stretched back; the point on
-// the far side is uniform along it, or the point towards it uniform; the cosine is that of the wrong side; a
-// sector's azimuth is uniform, or has no Newton step; a height is uniform in the angle; sectors run the same
-// way round; what is below the horizon is not cut off.
+// Seen to fail when: a triangle is chosen by half of the solid angle; what is left of u is not stretched
+// back; the point on the far side is uniform along it, or the point towards it; two of Lexell's cosines are
+// swapped; a sector's azimuth is uniform, or has no Newton step, or one; a height has u squared; the long
+// side is taken for the short ones; what is below the horizon is not cut off; a radius has no root; no
+// polygon is around the zenith.
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
 #include "polygon_cases.h"

@@ -1,11 +1,10 @@
 // Convex polygons by solid angle and by projected solid angle: measures against extended precision and closed
 // forms, samples within the polygon.
 //
-// Seen to fail when: a far polygon's triple product comes from its corners' directions; the corners of lanes
-// with fewer are counted; what the horizon cuts off is not left out, or its side is missing; the zenith's
-// triangles are those of the fan; a part that lies beyond the zenith is added; half of Dunavant's points have
-// the weights of the others; the sine of small angles has an absolute error; arcs beyond a right angle are
-// mirrored.
+// Seen to fail when: the triple product comes from the corners; nothing is cut off at the horizon, or at a
+// wrong place; the side along the horizon is missing; every polygon is around the zenith; all of Dunavant's
+// points have one weight; every measure is called accurate; polygons of half a radian are small; the sine of
+// small angles has an absolute error of 1e-7; arcs beyond a right angle are mirrored.
 #include "base/angles.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"

@@ -135,6 +135,10 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   // The cosine at the edge of a sphere is a difference of nearly equal numbers.
   all["Lights::pdf_solid_angle"] = {
       {word_below(lights), real(-4, 4), real(-4, 4), real(0, 1.2f), any_word()}, 30, 1};
+  all["SphericalPolygon"] = {{word_below(2), real(-4, 4), real(-4, 4), real(0, 1.2f), unit()}, 30, 1};
+  // Shares of a measure that is added up from angles up to 4096 times larger; where a sector begins it holds
+  // so little that their rounding moves the azimuth far.
+  all["ProjectedPolygon"] = {{word_below(2), real(-4, 4), real(-4, 4), real(0, 1.2f), real(0, 1)}, 400000, 1};
   // A receiver near a light's plane: the cosine, hundreds of times smaller than the products it is summed
   // from, divides. No edges: at a sphere's very rim rounding decides whether it is seen.
   all["sample of a uniform light"] = all["sample of a light by power"] = {

@@ -8,9 +8,12 @@
 #include "bsdf/bsdf.h"
 #include "geometry/surface_uv.h"
 #include "integrator/weights.h"
+#include "light/projected_polygon.h"
+#include "light/spherical_polygon.h"
 #include "lightsampler/light_sampler.h"
 #include "scene/scene.h"
 
+#include <array>
 #include <iterator>
 
 namespace etendue {
@@ -213,6 +216,29 @@ void light_pdf(const Scene& scene, Packet& p) {
   p.give(select(sample.is_there, scene.lights.pdf_solid_angle<F>(light, F(1), receiver, hit, every_lane()),
                 F(0)));
 }
+/// Of a pentagon and a triangle.
+PolygonFan<F> polygon_seen(Packet& p) {
+  static const PolygonTable table = [] {
+    PolygonTable made;
+    made.add(
+        std::array<Vec3f, 5>{Vec3f{0, 0, 2}, {-0.5f, 0.8f, 2}, {0.3f, 1.5f, 2}, {1.2f, 1, 2}, {1, 0, 2}});
+    made.add(std::array<Vec3f, 3>{Vec3f{0, 0, 2}, {0.3f, 1.5f, 2.2f}, {1, 0, 2}});
+    return made;
+  }();
+  const I row = as_int(p.word());
+  return table.seen_from<F>(p.vec(), row, every_lane());
+}
+void spherical_polygon(const Scene&, Packet& p) {
+  const PolygonFan<F> fan = polygon_seen(p);
+  const SphericalPolygon<F> polygon(fan);
+  p.give(polygon.solid_angle()), p.give(polygon.sample(p.square()));
+}
+void projected_polygon(const Scene&, Packet& p) {
+  const PolygonFan<F> fan = polygon_seen(p);
+  const ProjectedPolygon<F> polygon(fan, Frame<F>(Vec3<F>{F(0), F(0), F(1)}));
+  p.give(polygon.projected_solid_angle()), p.give(polygon.sample(p.square()));
+}
+
 template <class Sampler>
 void lights_sample(const Scene& scene, Packet& p) {
   const Receiver<F> receiver = receiver_at(p.vec());
@@ -296,6 +322,8 @@ constexpr WideFunction functions[]{
     {"split_unit", 1, 2, Words::integers, run<split>},
     {"Lights::sample end", 6, 3, Words::floats, run<light_end>},
     {"Lights::pdf_solid_angle", 6, 1, Words::floats, run<light_pdf>},
+    {"SphericalPolygon", 6, 4, Words::floats, run<spherical_polygon>},
+    {"ProjectedPolygon", 6, 4, Words::floats, run<projected_polygon>},
     {"sample of a uniform light", 5, 7, Words::floats, run<lights_sample<UniformLights>>},
     {"sample of a light by power", 5, 7, Words::floats, run<lights_sample<PowerLights>>},
     {"environment", 3, 4, Words::floats, run<environment>},
