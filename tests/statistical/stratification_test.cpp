@@ -76,8 +76,9 @@ void expect_gain(const Variances& variances, double bound, const std::string& wh
 
 // Light kinds and integrators.
 
-constexpr std::array integrators{"light",   "direct",   "average",   "mis",     "every_light",
-                                 "whitted", "path_ems", "path_mats", "path_mis"};
+constexpr std::array integrators{"light",       "direct",       "average",  "mis",
+                                 "every_light", "whitted",      "path_ems", "path_mats",
+                                 "path_mis",    "direct_light", "path"};
 
 /// What the integrators must gain, in their order; 0 for those that do not find the light.
 using Bounds = std::array<double, integrators.size()>;
@@ -111,47 +112,47 @@ auto light_cases() {
                 narrow_deg,
                 {mesh_xml("light.obj", light_xml(3)),
                  {{"light.obj", polygon_obj(rectangle_corners(center, half_u, half_v))}}},
-                {41, 4.3, 5.0, 8.6, 41, 41, 4.5, 2.3, 2.5}},
+                {41, 4.3, 5.0, 8.6, 41, 41, 4.5, 2.3, 2.5, 17, 1.6}},
       LightCase{"rectangle",
                 narrow_deg,
                 {rectangle_xml(center, half_u, half_v, light_xml(3)), {}},
-                {180, 4.3, 5.1, 9.0, 180, 180, 4.9, 2.3, 2.6}},
+                {180, 4.3, 5.1, 9.0, 180, 180, 4.9, 2.3, 2.6, 21, 1.6}},
       LightCase{"sphere",
                 narrow_deg,
                 {sphere_xml(center, 0.7, light_xml(3)), {}},
-                {59, 2.8, 3.0, 3.2, 59, 59, 3.4, 2.1, 2.0}},
+                {59, 2.8, 3.0, 3.2, 59, 59, 3.4, 2.1, 2.0, 7.2, 1.4}},
       LightCase{"disk",
                 narrow_deg,
                 {R"(<shape type="disk"><transform name="toWorld"><rotate axis="1,0,0" angle="170"/>
                     <translate value="0.3,0.5,1.2"/></transform>)" +
                      light_xml(3) + "</shape>",
                  {}},
-                {97, 3.8, 4.3, 7.4, 97, 97, 3.5, 2.0, 2.1}},
+                {97, 3.8, 4.3, 7.4, 97, 97, 3.5, 2.0, 2.1, 17, 1.5}},
       LightCase{"point",
                 wide_deg,
                 {R"(<emitter type="point"><point name="position" value="0.3,0.5,1.2"/></emitter>)", {}},
-                {1900, 0, 1900, 1900, 1900, 1900, 2.0, 0, 2.0}},
+                {1900, 0, 1900, 1900, 1900, 1900, 2.0, 0, 2.0, 1900, 2.1}},
       LightCase{"spot",
                 wide_deg,
                 {R"(<emitter type="spot"><point name="position" value="0.3,0.5,1.2"/>
                     <vector name="direction" value="-0.2,-0.4,-1"/><float name="cutoffAngle" value="80"/>
                     <float name="beamWidth" value="1"/></emitter>)",
                  {}},
-                {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3}},
+                {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3, 1900, 1.4}},
       LightCase{
           "directional",
           wide_deg,
           {R"(<emitter type="directional"><vector name="direction" value="-0.4,-0.9,-1"/></emitter>)", {}},
-          {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3}},
+          {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3, 1900, 1.4}},
       LightCase{"distant_disk",
                 narrow_deg,
                 {R"(<emitter type="distantdisk"><float name="thetaA" value="40"/></emitter>)", {}},
-                {44, 7.8, 8.5, 5.0, 44, 44, 5.2, 3.8, 2.4}},
+                {44, 7.8, 8.5, 5.0, 44, 44, 5.2, 3.8, 2.4, 8.3, 1.6}},
       LightCase{
           "envmap",
           narrow_deg,
           {R"(<emitter type="envmap"><string name="filename" value="map.exr"/></emitter>)", {envmap_file()}},
-          {2.1, 4.2, 2.2, 4.6, 2.1, 2.1, 2.2, 1.7, 2.1}}};
+          {2.1, 4.2, 2.2, 4.6, 2.1, 2.1, 2.2, 1.7, 2.1, 6.8, 1.0}}};
 }
 static_assert(std::tuple_size_v<decltype(light_cases())> == light_kind_count, "each kind needs a case");
 
@@ -218,7 +219,8 @@ struct LightSamplerCase {
 };
 constexpr LightSamplerCase light_sampler_cases[]{{"uniform", {{7.8, 3.1, 3.5}, {20, 3.9, 3.7}}},
                                                  {"power", {{8.9, 2.7, 3.3}, {6.1, 2.6, 2.3}}},
-                                                 {"all", {{730, 4.1, 2.1}, {33, 5.6, 1.7}}}};
+                                                 {"all", {{730, 4.1, 2.1}, {33, 5.6, 1.7}}},
+                                                 {"tree", {{10, 2.6, 2.6}, {3.5, 2.3, 2.2}}}};
 
 TEST(Stratification, OfEveryLightSampler) {
   ASSERT_EQ(std::size(light_sampler_cases), light_sampler_plugins().size()) << "each needs a case";
