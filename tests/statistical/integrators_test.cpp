@@ -26,11 +26,10 @@ struct Method {
   Heuristic heuristic;
 };
 /// Each is held against the first.
-constexpr Method methods[]{{"mis balance", "mis", Heuristic::balance},
-                           {"light", "light", Heuristic::balance},
-                           {"direct", "direct", Heuristic::balance},
-                           {"average", "average", Heuristic::balance},
-                           {"mis power", "mis", Heuristic::power}};
+constexpr Method methods[]{
+    {"mis balance", "mis", Heuristic::balance}, {"light", "light", Heuristic::balance},
+    {"direct", "direct", Heuristic::balance},   {"average", "average", Heuristic::balance},
+    {"mis power", "mis", Heuristic::power},     {"direct_light", "direct_light", Heuristic::power}};
 constexpr int block_px = 16;
 
 /// \param tests of the whole family, at `level`
@@ -41,8 +40,10 @@ void expect_equal_means(const Scene& scene, int samples_per_pixel, double level,
   for (const Method& method : methods) {
     // Another seed for each: the test wants independent estimates. BSDF sampling alone finds a small light so
     // rarely that fewer samples would not be normally distributed.
-    const int samples =
-        method.integrator == std::string("direct") ? 4 * samples_per_pixel : samples_per_pixel;
+    // Those of direct_light are several light samples each.
+    const int samples = method.integrator == std::string("direct")         ? 4 * samples_per_pixel
+                        : method.integrator == std::string("direct_light") ? samples_per_pixel / 8
+                                                                           : samples_per_pixel;
     RenderResult result =
         render(scene, render_settings(method.integrator, samples, 16, ++seed, method.heuristic));
     EXPECT_EQ(result.invalid.count(), 0) << what << ", " << method.name;
@@ -89,7 +90,7 @@ TEST_P(ExerciseScene, IntegratorsAgree) {
   const std::filesystem::path file = std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes/ex3" / GetParam();
   const LoadedScene loaded = small_exercise_scene(file);
   ASSERT_EQ(loaded.scene.camera.width_px, 96);
-  constexpr int scenes = 2, blocks = 24, channels = 3, pairs = 4;
+  constexpr int scenes = 2, blocks = 24, channels = 3, pairs = 5;
   expect_equal_means(loaded.scene, 4096, 0.01, scenes * blocks * channels * pairs, GetParam());
 }
 
@@ -122,7 +123,7 @@ LoadedScene everything_scene(int side_px = 64) {
 }
 
 TEST(SceneWithEverything, IntegratorsAgree) {
-  expect_equal_means(everything_scene().scene, 1024, 1e-5, 16 * 3 * 4, "everything");
+  expect_equal_means(everything_scene().scene, 1024, 1e-5, 16 * 3 * 5, "everything");
 }
 
 // --- bits ---

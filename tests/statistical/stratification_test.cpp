@@ -254,6 +254,57 @@ TEST(Stratification, OfSeveralLightSamplesAndBsdfSamples) {
     }
 }
 
+// Resampling keeps the points stratified.
+
+struct ViewCase {
+  const char* name;
+  SceneText scene;
+  int candidates;
+  /// What variance times samples at 16 and 64 samples may be of that at 4, over the same for `light`.
+  double slack_16, slack_64;
+};
+
+std::vector<ViewCase> views() {
+  const std::string ball = sphere_xml({0.3, 0.2, -0.6}, 0.35, diffuse_xml(0.6));
+  const SceneText box{mesh_xml("room.obj", diffuse_xml(0.7)) + ball +
+                          rectangle_xml({0, 0, 0.98}, {0.3, 0, 0}, {0, -0.3, 0}, light_xml(5)),
+                      {{"room.obj", box_obj({0, 0, 0}, 1, true)}}};
+  std::string lamps;
+  for (int k = 0; k < 400; ++k)
+    lamps += rectangle_xml({-0.95 + 0.1 * (k % 20), -0.95 + 0.1 * (k / 20), 0.5 + 0.02 * (k % 7)},
+                           {0.02, 0, 0.01}, {0, -0.02, 0}, light_xml(1 + k % 11));
+  const SceneText many{mesh_xml("room.obj", diffuse_xml(0.7)) + ball + lamps, box.files};
+  return {{"box", box, 1, 1, 1}, {"box", box, 4, 1, 1}, {"many lamps", many, 4, 1, 1}};
+}
+
+TEST(Stratification, IsKeptByResampling) {
+  const auto variance_of = [](const SceneText& scene, IntegratorSettings integrator, int spp) {
+    const LoadedScene loaded =
+        load_scene_text(camera_xml({0, -0.9, 0}, {0, 1, -0.3}, 70, 24, "sobol") + scene.body, scene.files);
+    RenderSettings settings = settings_of(integrator);
+    settings.samples_per_pixel = spp * scramblings;
+    return variance(render(loaded.scene, settings).film);
+  };
+  for (const ViewCase& view : views()) {
+    LightSamples lights = *integrator_from_name("direct_light").path_rules()->light_samples();
+    lights.candidates = view.candidates;
+    lights.technique = LightTechnique::area;  // As of `light`.
+    const IntegratorSettings light = integrator_from_name("light"),
+                             resampled{"direct_light", integrator_from_name("direct_light")
+                                                           .path_rules()
+                                                           ->with_light_samples(lights)};
+    const auto fall = [&](const IntegratorSettings& integrator, int spp) {
+      return variance_of(view.scene, integrator, spp) * spp / (variance_of(view.scene, integrator, 4) * 4);
+    };
+    for (const int spp : {16, 64}) {
+      const double of_light = fall(light, spp), of_resampled = fall(resampled, spp);
+      EXPECT_LT(of_resampled, of_light * (spp == 16 ? view.slack_16 : view.slack_64))
+          << view.name << ", " << view.candidates << " candidates, " << spp << " samples: " << of_light
+          << " of light, " << of_resampled << " resampled";
+    }
+  }
+}
+
 // Random numbers are shared by no two consumers.
 
 struct Part {
