@@ -25,11 +25,11 @@ class PolygonLight {
     if (technique == LightTechnique::solid_angle || technique == LightTechnique::projected_solid_angle)
       by_area_ = none;
     if (technique == LightTechnique::automatic) {
-      constexpr float far = 1.5f;  // Sides away: there it hardly matters where on the polygon.
+      constexpr float far = 4;  // Sides away: there it hardly matters where on the polygon.
       by_area_ = mask_and(lanes, length_sq(fan_.apex) > F(far * far) * fan_.area);
     }
     by_cosine_ = none;
-    if (technique == LightTechnique::projected_solid_angle || technique == LightTechnique::automatic)
+    if (technique == LightTechnique::projected_solid_angle)
       by_cosine_ = mask_and(mask_and(is_seen_, mask_not(by_area_)),
                             less(receiver.lit_sides, Int<F>(lit_side::front | lit_side::back)));
   }

@@ -188,6 +188,8 @@ class LightCuts {
     for (const double w : whole) lit += w > 0;
     // What no pilot has met may be lit by anything.
     const double defence = lit > 0 ? 0.1 : 1;
+    // Shares are whole numbers: one that rounds to 0 would leave its lights out.
+    constexpr double least_share = 0x1p-28;
     std::vector<double> weights(most_clusters);
     LightCut& cut = cuts_[std::size_t(slot)];
     cut.places.fill(tree.facet_count());
@@ -197,8 +199,9 @@ class LightCuts {
       double seen = 0;
       for (std::size_t k = 0; k < pilots; ++k)
         if (whole[k] > 0) seen += share_of(heap[e], k) / whole[k];
-      weights[e] = defence * double(cluster.power) / double(clusters[0].power) +
-                   (lit > 0 ? (1 - defence) * seen / lit : 0);
+      const double weight = defence * double(cluster.power) / double(clusters[0].power) +
+                            (lit > 0 ? (1 - defence) * seen / lit : 0);
+      weights[e] = cluster.power > 0 ? std::max(weight, least_share) : 0;
     }
     std::vector<std::int32_t> shares;
     append_cumulative_shares(weights, shares);

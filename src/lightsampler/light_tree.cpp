@@ -182,9 +182,12 @@ class Builder {
 
 Facet facet_of(const Lights& lights, const LightFacet& id, const LightBounds& bounds) {
   const Vec3f center = (bounds.box.low + bounds.box.high) * 0.5f;
+  // The centre is rounded: one corner may be farther from it than the others.
+  const Vec3f above = bounds.box.high - center, below = center - bounds.box.low;
+  const Vec3f reach{std::max(above.x, below.x), std::max(above.y, below.y), std::max(above.z, below.z)};
   return {id,
           center,
-          length(bounds.box.high - center),
+          length(reach),
           bounds.axis,
           bounds.cos_emission < 0 ? -1 : bounds.cos_normals,
           lights.facet_power(id.light, id.facet)};

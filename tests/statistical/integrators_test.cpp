@@ -26,11 +26,10 @@ struct Method {
   Heuristic heuristic;
 };
 /// Each is held against the first.
-constexpr Method methods[]{{"mis balance", "mis", Heuristic::balance},
-                           {"light", "light", Heuristic::balance},
-                           {"direct", "direct", Heuristic::balance},
-                           {"average", "average", Heuristic::balance},
-                           {"mis power", "mis", Heuristic::power}};
+constexpr Method methods[]{
+    {"mis balance", "mis", Heuristic::balance}, {"light", "light", Heuristic::balance},
+    {"direct", "direct", Heuristic::balance},   {"average", "average", Heuristic::balance},
+    {"mis power", "mis", Heuristic::power},     {"direct_light", "direct_light", Heuristic::power}};
 constexpr int block_px = 16;
 
 /// \param tests of the whole family, at `level`
@@ -41,8 +40,10 @@ void expect_equal_means(const Scene& scene, int samples_per_pixel, double level,
   for (const Method& method : methods) {
     // Another seed for each: the test wants independent estimates. BSDF sampling alone finds a small light so
     // rarely that fewer samples would not be normally distributed.
-    const int samples =
-        method.integrator == std::string("direct") ? 4 * samples_per_pixel : samples_per_pixel;
+    // Those of direct_light are several light samples each.
+    const int samples = method.integrator == std::string("direct")         ? 4 * samples_per_pixel
+                        : method.integrator == std::string("direct_light") ? samples_per_pixel / 8
+                                                                           : samples_per_pixel;
     RenderResult result =
         render(scene, render_settings(method.integrator, samples, 16, ++seed, method.heuristic));
     EXPECT_EQ(result.invalid.count(), 0) << what << ", " << method.name;
@@ -89,7 +90,7 @@ TEST_P(ExerciseScene, IntegratorsAgree) {
   const std::filesystem::path file = std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes/ex3" / GetParam();
   const LoadedScene loaded = small_exercise_scene(file);
   ASSERT_EQ(loaded.scene.camera.width_px, 96);
-  constexpr int scenes = 2, blocks = 24, channels = 3, pairs = 4;
+  constexpr int scenes = 2, blocks = 24, channels = 3, pairs = 5;
   expect_equal_means(loaded.scene, 4096, 0.01, scenes * blocks * channels * pairs, GetParam());
 }
 
@@ -122,7 +123,7 @@ LoadedScene everything_scene(int side_px = 64) {
 }
 
 TEST(SceneWithEverything, IntegratorsAgree) {
-  expect_equal_means(everything_scene().scene, 1024, 1e-5, 16 * 3 * 4, "everything");
+  expect_equal_means(everything_scene().scene, 1024, 1e-5, 16 * 3 * 5, "everything");
 }
 
 // --- bits ---
@@ -144,17 +145,19 @@ Film render_by(int threads, const Scene& scene, RenderSettings settings) {
 }
 
 TEST(Bits, AreTheSameForAnyNumberOfThreadsAndAgain) {
-  const LoadedScene loaded = everything_scene(40);
-  for (const Isa isa : available_isas())
+  for (const char* integrator : {"mis", "direct_light"})
     for (const int samples : {1, 48, 1100}) {  // Many pixels a block, few, and more than one block a pixel.
-      RenderSettings settings = render_settings("mis", samples, samples == 1 ? 1 : 4, 5);
-      settings.isa = isa;
-      const Film once = render_by(1, loaded.scene, settings);
-      EXPECT_EQ(differing_pixels(once, render_by(2, loaded.scene, settings)), 0)
-          << isa_name(isa) << ", 2 threads";
-      if (samples > 48) continue;
-      EXPECT_EQ(differing_pixels(once, render_by(1, loaded.scene, settings)), 0)
-          << isa_name(isa) << ", again";
+      const LoadedScene loaded = everything_scene(samples > 48 ? 20 : 40);
+      for (const Isa isa : available_isas()) {
+        RenderSettings settings = render_settings(integrator, samples, samples == 1 ? 1 : 4, 5);
+        settings.isa = isa;
+        const Film once = render_by(1, loaded.scene, settings);
+        EXPECT_EQ(differing_pixels(once, render_by(2, loaded.scene, settings)), 0)
+            << integrator << ", " << isa_name(isa) << ", 2 threads";
+        if (samples > 48) continue;
+        EXPECT_EQ(differing_pixels(once, render_by(1, loaded.scene, settings)), 0)
+            << integrator << ", " << isa_name(isa) << ", again";
+      }
     }
 }
 
@@ -174,22 +177,38 @@ LoadedScene bounces_scene(int side_px = 64) {
 }
 
 TEST(Bits, OfPathsAreTheSameForAnyNumberOfThreads) {
-  for (const int samples : {1, 48, 1100}) {
-    const LoadedScene loaded = bounces_scene(samples > 48 ? 8 : 40);
-    for (const Isa isa : available_isas()) {
-      RenderSettings settings = render_settings("path_mis", samples, samples == 1 ? 1 : 4, 5);
-      settings.isa = isa;
-      EXPECT_EQ(differing_pixels(render_by(1, loaded.scene, settings), render_by(2, loaded.scene, settings)),
-                0)
-          << isa_name(isa) << ", " << samples << " samples, 2 threads";
+  for (const char* integrator : {"path_mis", "path"})
+    for (const int samples : {1, 48, 1100}) {
+      const LoadedScene loaded = bounces_scene(samples > 48 ? 8 : 40);
+      for (const Isa isa : available_isas()) {
+        RenderSettings settings = render_settings(integrator, samples, samples == 1 ? 1 : 4, 5);
+        settings.isa = isa;
+        EXPECT_EQ(
+            differing_pixels(render_by(1, loaded.scene, settings), render_by(2, loaded.scene, settings)), 0)
+            << integrator << ", " << isa_name(isa) << ", " << samples << " samples, 2 threads";
+      }
     }
-  }
+}
+
+/// More facets than a cut of the light tree has clusters, so that light samples are resampled; no medium, in
+/// which there are no cuts.
+LoadedScene many_lights_scene(int side_px) {
+  std::string lights;
+  for (int k = 0; k < 400; ++k)
+    lights += rectangle_xml({-2.5 + 0.25 * (k % 20), -2.5 + 0.25 * (k / 20), 2 + 0.04 * (k % 7)},
+                            {0.03, 0, 0.01}, {0, -0.03, 0}, light_xml(1 + k % 11));
+  return load_scene_text(camera_xml({0, -6, 2.5}, {0, 0, 0.7}, 45, side_px, "sobol") +
+                         rectangle_xml({0, 0, 0}, {6, 0, 0}, {0, 6, 0}, phong_xml(0.4, 0.3, 30)) +
+                         sphere_xml({1, -0.5, 0.7}, 0.6, diffuse_xml(0.5)) + lights);
 }
 
 TEST(Bits, AreTheSameForTilesInAnyOrder) {
-  for (const char* integrator : {"average", "path_mis"}) {
-    const LoadedScene loaded = bounces_scene(80);
-    const RenderSettings settings = render_settings(integrator, 16, 4, 5);
+  for (const char* integrator : {"average", "path_mis", "direct_light", "path"}) {
+    const bool is_resampled = integrator == std::string("direct_light");
+    const LoadedScene loaded = is_resampled ? many_lights_scene(80) : bounces_scene(80);
+    RenderSettings settings = render_settings(integrator, 16, 4, 5);
+    settings.integrator = settled(settings.integrator, loaded.scene.lights);
+    ASSERT_EQ(settings.integrator.path_rules()->candidates(0) > 1, is_resampled);
     const Film film = render(loaded.scene, settings).film;
     Film backwards(80, 80);
     const auto block = std::make_unique<SampleBlock>();
@@ -229,8 +248,9 @@ double relative_difference_of_means(const Film& a, const Film& b) {
 TEST(Bits, DoNotDependOnTheOrderOfShadowRays) {
   const LoadedScene direct = everything_scene(), bounces = bounces_scene();
   for (const Isa isa : available_isas())
-    for (const char* integrator : {"light", "path_mis"}) {
-      const Scene& scene = integrator == std::string("light") ? direct.scene : bounces.scene;
+    for (const char* integrator : {"light", "path_mis", "direct_light", "path"}) {
+      const bool is_direct = integrator == std::string("light") || integrator == std::string("direct_light");
+      const Scene& scene = is_direct ? direct.scene : bounces.scene;
       RenderSettings settings = render_settings(integrator, 64, 4, 6);
       settings.isa = isa;
       const Film aimed = render(scene, settings).film;

@@ -6,11 +6,16 @@
 // areas; its least share is left out; the number left over is not stretched; `all` states the pmf 1/n.
 #include "lightsampler/light_sampler.h"
 
+#include "lightsampler/tree_lights.h"
+#include "random_lights.h"
 #include "stats/chi_squared.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <numeric>
 #include <random>
@@ -19,7 +24,7 @@ namespace etendue {
 namespace {
 
 constexpr double family_level = 1e-5;
-constexpr int family_size = 60, samples = 200000;
+constexpr int family_size = 300, samples = 200000;
 constexpr Receiver<float> receiver{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, lit_side::front};
 
 /// Squares of side 0.1 to 1 above the receiver, facing it, of mixed radiance; one in seven is black.
@@ -52,7 +57,8 @@ TEST_P(EveryLightSampler, ChoosesWithItsProbability) {
       for (std::int32_t pass = 0; pass < sampler.passes(); ++pass) {
         const LightChoice<float> choice = sampler.choose<float>(receiver, std::uint32_t(random()), pass);
         ASSERT_TRUE(choice.light >= 0 && choice.light < count);
-        ASSERT_EQ(choice.pmf, (sampler.pmf<float>(receiver, choice.light, 0)));
+        // A walk multiplies from the root down, the probability asked for is multiplied from the leaf up.
+        ASSERT_NEAR((sampler.pmf<float>(receiver, choice.light, 0)) / choice.pmf, 1, 1e-5);
         ++observed[std::size_t(choice.light)];
         left += choice.u_left * 0x1p-32;
         ++choices;
@@ -86,7 +92,8 @@ TEST_P(EveryLightSampler, EstimatesTheSumOverTheLights) {
     for (std::int32_t pass = 0; pass < sampler.passes(); ++pass) {
       const Vec2<std::uint32_t> u{std::uint32_t(random()), std::uint32_t(random())};
       const LightChoice<float> choice = sampler.choose<float>(receiver, u.x, pass);
-      sum += irradiance(lights.sample<float>(choice.light, choice.pmf, receiver, {choice.u_left, u.y}, true));
+      sum += irradiance(
+          lights.sample<float>(choice.light, choice.pmf, receiver, {choice.u_left, u.y}, true, choice.facet));
     }
     estimate.add(sum);
     sum = 0;
@@ -120,6 +127,150 @@ TEST_P(EveryLightSampler, TakesLightsWithoutPower) {
   EXPECT_TRUE(choice.light >= 0 && choice.light < 3);
   EXPECT_GT(choice.pmf, 0);
 }
+
+// Facets by the light tree: by a walk for any receiver, by a cut made for others.
+
+struct ReceiverCase {
+  std::string name;
+  Receiver<float> receiver;
+};
+
+std::vector<ReceiverCase> receivers_around(const LightSwarm& swarm, std::uint32_t seed, int count) {
+  RandomPlaces random(seed);
+  std::vector<ReceiverCase> cases;
+  constexpr std::int32_t sides[]{lit_side::front, lit_side::front, lit_side::front | lit_side::back,
+                                 lit_side::medium};
+  for (int k = 0; k < count; ++k) {
+    const Vec3f normal = random.direction();
+    // Among them, around them, far from them.
+    const float extent = swarm.extent * std::array{0.5f, 3.0f, 100.0f}[std::size_t(k % 3)];
+    cases.push_back({fmt::format("receiver {}", k),
+                     {swarm.center + random.in_cube(extent), normal, normal, sides[k % 4]}});
+  }
+  return cases;
+}
+
+/// Chi-squared tests of which facet is chosen; and of which jointly with what is left of the number, for the
+/// facets that are chosen most: independent of the choice, and uniform.
+void expect_choices_by_pmf(const TreeLights& sampler, const Lights& lights, const Receiver<float>& receiver,
+                           const std::string& what) {
+  std::vector<std::int32_t> first{0};
+  for (std::int32_t light = 0; light < lights.count(); ++light)
+    first.push_back(first.back() + lights.facet_count(light));
+  const auto facets = std::size_t(first.back());
+  constexpr int parts = 8;
+  std::vector<double> expected, observed(facets + 1), observed_parts(facets * parts);
+  double sum = 0;
+  for (std::int32_t light = 0; light < lights.count(); ++light)
+    for (std::int32_t facet = 0; facet < lights.facet_count(light); ++facet) {
+      expected.push_back(samples * double(sampler.pmf<float>(receiver, light, facet)));
+      sum += expected.back() / samples;
+    }
+  ASSERT_LT(sum, 1 + 1e-5) << what;
+  std::mt19937 random(21);
+  for (int i = 0; i < samples; ++i) {
+    const LightChoice<float> choice = sampler.choose<float>(receiver, std::uint32_t(random()), 0);
+    if (!(choice.pmf > 0)) {
+      ++observed[facets];
+      continue;
+    }
+    ASSERT_TRUE(choice.light >= 0 && choice.light < lights.count() && choice.facet >= 0 &&
+                choice.facet < lights.facet_count(choice.light))
+        << what;
+    const auto at = std::size_t(first[std::size_t(choice.light)] + choice.facet);
+    ASSERT_NEAR(expected[at] / samples / choice.pmf, 1, 1e-4) << what;
+    ++observed[at];
+    ++observed_parts[at * parts + (choice.u_left >> 29)];
+  }
+  expected.push_back(samples * std::max(0.0, 1 - sum));  // Nothing is chosen where nothing arrives.
+  if (sum == 0) {
+    EXPECT_EQ(observed[facets], samples) << what;
+    return;
+  }
+  const ChiSquaredTest test = chi_squared_test(observed, expected, {.most_in_empty_cell = 1});
+  if (facets > 1 && test.degrees_of_freedom > 0) {
+    EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
+        << what << ": chi-squared " << test.statistic << ", " << test.degrees_of_freedom
+        << " degrees of freedom";
+  }
+  std::vector<double> expected_joint, observed_joint;
+  for (std::size_t at = 0; at < facets; ++at)
+    for (std::size_t part = 0; expected[at] > 50 * parts && part < parts; ++part) {
+      expected_joint.push_back(observed[at] / parts);
+      observed_joint.push_back(observed_parts[at * parts + part]);
+    }
+  if (expected_joint.empty()) return;
+  // The number of each facet is given: one degree of freedom less for each, which makes this test careful.
+  const ChiSquaredTest joint = chi_squared_test(observed_joint, expected_joint, {});
+  EXPECT_FALSE(is_rejected(joint.p_value, family_level, family_size))
+      << what << ", what is left over: chi-squared " << joint.statistic << ", " << joint.degrees_of_freedom
+      << " degrees of freedom";
+}
+
+struct SwarmCase {
+  const char* name;
+  LightSwarm swarm;
+  int triangles = 0;  ///< Of one more mesh.
+  int beside = 0;     ///< Directional lights, which have no place.
+};
+constexpr SwarmCase swarm_cases[]{
+    {"one", {.count = 1}},
+    {"three", {.count = 3, .size = 0.5f}},
+    {"forty, and three beside", {.count = 40}, 0, 3},
+    {"only beside", {.count = 0}, 0, 2},
+    {"a mesh among lights", {.count = 30, .size = 0.3f}, 500},
+    {"at one place", {.count = 20, .extent = 0, .size = 0.3f}, 40},
+    {"tiny and far off", {.count = 50, .extent = 1e-3f, .size = 1e-4f, .center = {5, -3, 8}}},
+    {"leaves of four", {.count = 5, .extent = 2, .size = 0.02f}, 70000}};
+
+Lights lights_of(const SwarmCase& c) {
+  RandomPlaces random(31);
+  Lights lights = random_lights(random, c.swarm);
+  if (c.triangles > 0) add_triangles(lights, random, c.triangles, c.swarm, 1);
+  for (int k = 0; k < c.beside; ++k) lights.add<DirectionalLights>({1, 1, 1}, "", random.direction());
+  return lights;
+}
+
+class LightsByTree : public ::testing::TestWithParam<SwarmCase> {};
+
+TEST_P(LightsByTree, AWalkChoosesFacetsWithTheirProbability) {
+  const Lights lights = lights_of(GetParam());
+  const TreeLights sampler(lights);
+  const int receivers = GetParam().triangles > 1000 ? 2 : 6;
+  for (const ReceiverCase& c : receivers_around(GetParam().swarm, 41, receivers))
+    expect_choices_by_pmf(sampler, lights, c.receiver, c.name);
+}
+
+TEST_P(LightsByTree, ACutChoosesFacetsWithTheirProbability) {
+  const Lights lights = lights_of(GetParam());
+  const TreeLights sampler(lights);
+  if (sampler.tree().is_empty()) return;
+  const std::vector<ReceiverCase> cases = receivers_around(GetParam().swarm, 42, 8);
+  LightCuts cuts;
+  cuts.take_tiles({5, 9, 2}, nullptr, [&](int slot, std::int32_t) {
+    std::vector<Receiver<float>> pilots;
+    std::array<bool, LightCuts::pilots> is_lit{};
+    for (std::size_t k = 0; k < LightCuts::pilots; ++k) {
+      pilots.push_back(cases[k % cases.size()].receiver);
+      is_lit[k] = slot > 0 && k % 3 != std::size_t(slot);  // None in the first.
+    }
+    cuts.make<float>(slot, sampler.tree(), pilots.data(), is_lit.data(),
+                     [](int p, const Importance<float>&) { return 1 + float(p % 4); });
+  });
+  for (std::int32_t slot = 0; slot < 3; ++slot) {
+    Receiver<float> receiver = receivers_around(GetParam().swarm, 43, 3)[std::size_t(slot)].receiver;
+    receiver.cuts = &cuts;
+    receiver.cut = slot;
+    expect_choices_by_pmf(sampler, lights, receiver, fmt::format("cut {}", slot));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Swarms, LightsByTree, ::testing::ValuesIn(swarm_cases), [](const auto& info) {
+  std::string name = info.param.name;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == ','; }, '_');
+  return name;
+});
 
 std::vector<std::string> names() {
   std::vector<std::string> all;

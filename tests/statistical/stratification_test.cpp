@@ -76,8 +76,9 @@ void expect_gain(const Variances& variances, double bound, const std::string& wh
 
 // Light kinds and integrators.
 
-constexpr std::array integrators{"light",   "direct",   "average",   "mis",     "every_light",
-                                 "whitted", "path_ems", "path_mats", "path_mis"};
+constexpr std::array integrators{"light",       "direct",       "average",  "mis",
+                                 "every_light", "whitted",      "path_ems", "path_mats",
+                                 "path_mis",    "direct_light", "path"};
 
 /// What the integrators must gain, in their order; 0 for those that do not find the light.
 using Bounds = std::array<double, integrators.size()>;
@@ -111,47 +112,47 @@ auto light_cases() {
                 narrow_deg,
                 {mesh_xml("light.obj", light_xml(3)),
                  {{"light.obj", polygon_obj(rectangle_corners(center, half_u, half_v))}}},
-                {41, 4.3, 5.0, 8.6, 41, 41, 4.5, 2.3, 2.5}},
+                {41, 4.3, 5.0, 8.6, 41, 41, 4.5, 2.3, 2.5, 17, 1.6}},
       LightCase{"rectangle",
                 narrow_deg,
                 {rectangle_xml(center, half_u, half_v, light_xml(3)), {}},
-                {180, 4.3, 5.1, 9.0, 180, 180, 4.9, 2.3, 2.6}},
+                {180, 4.3, 5.1, 9.0, 180, 180, 4.9, 2.3, 2.6, 21, 1.6}},
       LightCase{"sphere",
                 narrow_deg,
                 {sphere_xml(center, 0.7, light_xml(3)), {}},
-                {59, 2.8, 3.0, 3.2, 59, 59, 3.4, 2.1, 2.0}},
+                {59, 2.8, 3.0, 3.2, 59, 59, 3.4, 2.1, 2.0, 7.2, 1.4}},
       LightCase{"disk",
                 narrow_deg,
                 {R"(<shape type="disk"><transform name="toWorld"><rotate axis="1,0,0" angle="170"/>
                     <translate value="0.3,0.5,1.2"/></transform>)" +
                      light_xml(3) + "</shape>",
                  {}},
-                {97, 3.8, 4.3, 7.4, 97, 97, 3.5, 2.0, 2.1}},
+                {97, 3.8, 4.3, 7.4, 97, 97, 3.5, 2.0, 2.1, 17, 1.5}},
       LightCase{"point",
                 wide_deg,
                 {R"(<emitter type="point"><point name="position" value="0.3,0.5,1.2"/></emitter>)", {}},
-                {1900, 0, 1900, 1900, 1900, 1900, 2.0, 0, 2.0}},
+                {1900, 0, 1900, 1900, 1900, 1900, 2.0, 0, 2.0, 1900, 2.1}},
       LightCase{"spot",
                 wide_deg,
                 {R"(<emitter type="spot"><point name="position" value="0.3,0.5,1.2"/>
                     <vector name="direction" value="-0.2,-0.4,-1"/><float name="cutoffAngle" value="80"/>
                     <float name="beamWidth" value="1"/></emitter>)",
                  {}},
-                {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3}},
+                {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3, 1900, 1.4}},
       LightCase{
           "directional",
           wide_deg,
           {R"(<emitter type="directional"><vector name="direction" value="-0.4,-0.9,-1"/></emitter>)", {}},
-          {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3}},
+          {1900, 0, 1900, 1900, 1900, 1900, 1.3, 0, 1.3, 1900, 1.4}},
       LightCase{"distant_disk",
                 narrow_deg,
                 {R"(<emitter type="distantdisk"><float name="thetaA" value="40"/></emitter>)", {}},
-                {44, 7.8, 8.5, 5.0, 44, 44, 5.2, 3.8, 2.4}},
+                {44, 7.8, 8.5, 5.0, 44, 44, 5.2, 3.8, 2.4, 8.3, 1.6}},
       LightCase{
           "envmap",
           narrow_deg,
           {R"(<emitter type="envmap"><string name="filename" value="map.exr"/></emitter>)", {envmap_file()}},
-          {2.1, 4.2, 2.2, 4.6, 2.1, 2.1, 2.2, 1.7, 2.1}}};
+          {2.1, 4.2, 2.2, 4.6, 2.1, 2.1, 2.2, 1.7, 2.1, 6.8, 1.0}}};
 }
 static_assert(std::tuple_size_v<decltype(light_cases())> == light_kind_count, "each kind needs a case");
 
@@ -218,7 +219,8 @@ struct LightSamplerCase {
 };
 constexpr LightSamplerCase light_sampler_cases[]{{"uniform", {{7.8, 3.1, 3.5}, {20, 3.9, 3.7}}},
                                                  {"power", {{8.9, 2.7, 3.3}, {6.1, 2.6, 2.3}}},
-                                                 {"all", {{730, 4.1, 2.1}, {33, 5.6, 1.7}}}};
+                                                 {"all", {{730, 4.1, 2.1}, {33, 5.6, 1.7}}},
+                                                 {"tree", {{10, 2.6, 2.6}, {3.5, 2.3, 2.2}}}};
 
 TEST(Stratification, OfEveryLightSampler) {
   ASSERT_EQ(std::size(light_sampler_cases), light_sampler_plugins().size()) << "each needs a case";
@@ -250,6 +252,57 @@ TEST(Stratification, OfSeveralLightSamplesAndBsdfSamples) {
                   bounds[light_samples][bsdf_samples],
                   fmt::format("{} light samples, {} BSDF samples", light_samples, bsdf_samples));
     }
+}
+
+// Resampling keeps the points stratified.
+
+struct ViewCase {
+  const char* name;
+  SceneText scene;
+  int candidates;
+  /// What variance times samples at 16 and 64 samples may be of that at 4, over the same for `light`.
+  double slack_16, slack_64;
+};
+
+std::vector<ViewCase> views() {
+  const std::string ball = sphere_xml({0.3, 0.2, -0.6}, 0.35, diffuse_xml(0.6));
+  const SceneText box{mesh_xml("room.obj", diffuse_xml(0.7)) + ball +
+                          rectangle_xml({0, 0, 0.98}, {0.3, 0, 0}, {0, -0.3, 0}, light_xml(5)),
+                      {{"room.obj", box_obj({0, 0, 0}, 1, true)}}};
+  std::string lamps;
+  for (int k = 0; k < 400; ++k)
+    lamps += rectangle_xml({-0.95 + 0.1 * (k % 20), -0.95 + 0.1 * (k / 20), 0.5 + 0.02 * (k % 7)},
+                           {0.02, 0, 0.01}, {0, -0.02, 0}, light_xml(1 + k % 11));
+  const SceneText many{mesh_xml("room.obj", diffuse_xml(0.7)) + ball + lamps, box.files};
+  return {{"box", box, 1, 1, 1}, {"box", box, 4, 1, 1}, {"many lamps", many, 4, 1, 1}};
+}
+
+TEST(Stratification, IsKeptByResampling) {
+  const auto variance_of = [](const SceneText& scene, IntegratorSettings integrator, int spp) {
+    const LoadedScene loaded =
+        load_scene_text(camera_xml({0, -0.9, 0}, {0, 1, -0.3}, 70, 24, "sobol") + scene.body, scene.files);
+    RenderSettings settings = settings_of(integrator);
+    settings.samples_per_pixel = spp * scramblings;
+    return variance(render(loaded.scene, settings).film);
+  };
+  for (const ViewCase& view : views()) {
+    LightSamples lights = *integrator_from_name("direct_light").path_rules()->light_samples();
+    lights.candidates = view.candidates;
+    lights.technique = LightTechnique::area;  // As of `light`.
+    const IntegratorSettings light = integrator_from_name("light"),
+                             resampled{"direct_light", integrator_from_name("direct_light")
+                                                           .path_rules()
+                                                           ->with_light_samples(lights)};
+    const auto fall = [&](const IntegratorSettings& integrator, int spp) {
+      return variance_of(view.scene, integrator, spp) * spp / (variance_of(view.scene, integrator, 4) * 4);
+    };
+    for (const int spp : {16, 64}) {
+      const double of_light = fall(light, spp), of_resampled = fall(resampled, spp);
+      EXPECT_LT(of_resampled, of_light * (spp == 16 ? view.slack_16 : view.slack_64))
+          << view.name << ", " << view.candidates << " candidates, " << spp << " samples: " << of_light
+          << " of light, " << of_resampled << " resampled";
+    }
+  }
 }
 
 // Random numbers are shared by no two consumers.

@@ -26,16 +26,13 @@ LoadedScene small_scene(const std::string& more = "") {
   return load_scene(read_nori_xml(folder.path() / "scene.xml"));
 }
 
-class Replay : public testing::TestWithParam<const char*> {};
-
-TEST_P(Replay, SumsToThePixelOfTheScalarKernel) {
-  LoadedScene loaded = small_scene();
+void expect_sums_to_pixel(LoadedScene loaded, const char* integrator) {
   for (const auto& [sampler, replicates_by] : {std::pair{SamplerKind::independent, ReplicatesBy::block},
                                                std::pair{SamplerKind::sobol, ReplicatesBy::block},
                                                std::pair{SamplerKind::sobol, ReplicatesBy::scrambling}}) {
     loaded.scene.sampler = sampler;
     RenderSettings settings;
-    settings.integrator = integrator_from_name(GetParam());
+    settings.integrator = integrator_from_name(integrator);
     settings.samples_per_pixel = 2;
     settings.replicates = 2;  // so that a replicate's mean is one sample's radiance
     settings.replicates_by = replicates_by;
@@ -56,6 +53,23 @@ TEST_P(Replay, SumsToThePixelOfTheScalarKernel) {
         lit += first.r > 0;
       }
     EXPECT_GT(lit, 1);
+  }
+}
+
+class Replay : public testing::TestWithParam<const char*> {};
+
+TEST_P(Replay, SumsToThePixelOfTheScalarKernel) { expect_sums_to_pixel(small_scene(), GetParam()); }
+
+/// By cuts of the light tree, which hold every facet or not.
+TEST(ReplayOfResampledLights, SumsToThePixelOfTheScalarKernel) {
+  std::string lamps;
+  for (int k = 0; k < 300; ++k)
+    lamps += "<shape type='sphere'><point name='center' value='" + std::to_string(k % 20 - 10) + " " +
+             std::to_string(k / 20 - 7) +
+             " 2'/><float name='radius' value='0.05'/><emitter type='area'/></shape>";
+  for (const char* integrator : {"direct_light", "path"}) {
+    expect_sums_to_pixel(small_scene(), integrator);
+    expect_sums_to_pixel(small_scene(lamps), integrator);
   }
 }
 

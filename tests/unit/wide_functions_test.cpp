@@ -145,6 +145,9 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
       {real(-4, 4), real(-4, 4), real(0, 1.2f), [](std::mt19937& random) { return std::uint32_t(random()); }},
       4000,
       10};
+  // The sine from the square root of what is left of 1 - cos^2, as square_to_power_cosine.
+  all["importance of lights"] = {
+      {real(-4, 4), real(-4, 4), real(-4, 4), magnitude(-3, 0), real(-1, 1, {-1, 1})}, 4000, 1, 2};
   // Up to four lights of radiance 3; a texel of the map is an ulp of the angle times its width wide.
   all["environment"] = {{}, 200, 3, 1};
   all["mis_weight balance"] = all["mis_weight power"] = {{magnitude(-6, 6), magnitude(-6, 6, {0})}, 4};

@@ -10,6 +10,7 @@
 #include "integrator/weights.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
+#include "lightsampler/light_importance.h"
 #include "lightsampler/light_sampler.h"
 #include "scene/scene.h"
 
@@ -248,6 +249,17 @@ void lights_sample(const Scene& scene, Packet& p) {
               scene.lights.sample<F>(choice.light, choice.pmf, receiver, {choice.u_left, u.y}, every_lane()));
 }
 
+/// Of a cluster to a receiver at the origin that is lit from the front.
+void light_importance(const Scene&, Packet& p) {
+  const Vec3<F> axis = p.vec();
+  const Vec3<F> normal = p.vec();
+  const Vec3<F> center = p.vec();
+  const F radius_sq = p.real(), cos_normals = p.real();
+  const Receiver<F> receiver{{F(0), F(0), F(0)}, normal, normal, I(lit_side::front)};
+  const Importance<F> of = importance<F>({center, axis, radius_sq, cos_normals, F(1)}, receiver);
+  p.give(of.value), p.give(of.spread_sq), p.give(of.wi);
+}
+
 void environment(const Scene& scene, Packet& p) {
   const Vec3<F> direction = p.vec();
   Color<F> radiance{F(0), F(0), F(0)};
@@ -326,6 +338,7 @@ constexpr WideFunction functions[]{
     {"ProjectedPolygon", 6, 4, Words::floats, run<projected_polygon>},
     {"sample of a uniform light", 5, 7, Words::floats, run<lights_sample<UniformLights>>},
     {"sample of a light by power", 5, 7, Words::floats, run<lights_sample<PowerLights>>},
+    {"importance of lights", 11, 5, Words::floats, run<light_importance>},
     {"environment", 3, 4, Words::floats, run<environment>},
     {"mis_weight balance", 2, 1, Words::floats, run<weight<Heuristic::balance>>},
     {"mis_weight power", 2, 1, Words::floats, run<weight<Heuristic::power>>},
