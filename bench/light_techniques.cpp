@@ -16,7 +16,7 @@ namespace {
 using namespace etendue;
 
 // Of the relative errors, for places rounded to 2^-24: times PolygonCase::condition().
-constexpr double solid_angle_bound = 2e-6, projected_bound = 5e-5;
+constexpr double solid_angle_bound = 2e-6, projected_bound = 3e-4;
 
 /// The errors of one kind of polygons and receivers.
 struct Errors {
