@@ -3,7 +3,9 @@
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its tests), fixed seeds.
 // Seen to fail when: the power sampler states the pmf of the next light, or takes powers without the lights'
-// areas; its least share is left out; the number left over is not stretched; `all` states the pmf 1/n.
+// areas; its least share is left out; the number left over is not stretched; `all` states the pmf 1/n; a walk
+// states the pmf of the sibling; a cut states that of its neighbour, or of another tile; a walk or a cut does
+// not stretch the number; the pmf within a leaf is left out.
 #include "lightsampler/light_sampler.h"
 
 #include "lightsampler/tree_lights.h"

@@ -149,6 +149,9 @@ struct ExactCase {
   std::string name, lights;
   std::vector<SceneFile> files;
   double irradiance;  ///< At the origin, from above.
+  /// Relative variance of a pixel that a test assumes at the least: rounding where the technique leaves none,
+  /// and the rays that meet the light where these are too few to be normally distributed.
+  double variance_floor = 1e-8;
 };
 
 std::vector<ExactCase> exact_cases() {
@@ -158,7 +161,8 @@ std::vector<ExactCase> exact_cases() {
     cases.push_back({name,
                      rectangle_xml(center, u, v, light_xml(radiance)),
                      {},
-                     polygon_irradiance(rectangle_corners(center, u, v), radiance, origin, up)});
+                     polygon_irradiance(rectangle_corners(center, u, v), radiance, origin, up),
+                     4e-4});
   };
   const Vec3d center{1, 0.5, 1}, half_u{0.5, 0, 0}, half_v{0, -0.5, 0}, sphere_center{-1, 0.8, 1.2};
   const std::vector<Vec3d> triangle{{-0.5, -1.6, 1.2}, {-0.4, -0.4, 1.6}, {0.6, -1, 1.4}};
@@ -185,7 +189,7 @@ std::vector<ExactCase> exact_cases() {
   double sum = 0;
   for (int k = 0; k < 300; ++k) {
     // At one height, so that none hides another.
-    const Vec3d at{-2 + 0.2 * (k % 20), -1.5 + 0.2 * (k / 20), 1}, u{0.05, 0, 0}, v{0, -0.05, 0};
+    const Vec3d at{-1.97 + 0.2 * (k % 20), -1.5 + 0.2 * (k / 20), 1}, u{0.05, 0, 0}, v{0, -0.05, 0};
     lamps += rectangle_xml(at, u, v, light_xml(1 + k % 11));
     sum += polygon_irradiance(rectangle_corners(at, u, v), 1 + k % 11, origin, up);
   }
@@ -213,12 +217,11 @@ TEST_P(ExactIrradiance, IsTheMeanOfEveryCombination) {
     const RenderResult result = render(loaded.scene, settings);
     EXPECT_EQ(result.invalid.count(), 0);
     const RunningStatistics mean = statistics_of_pixels(result.film, &Color<double>::g);
-    // Where the technique leaves no variance, rounding is some 1e-5.
-    const MeanTest test = t_test(mean, exact, exact * exact * 1e-8);
+    const MeanTest test = t_test(mean, exact, exact * exact * c.variance_floor);
     EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
         << what << ": " << mean.mean << " +- " << mean.standard_error() << ", exact " << exact << ", "
         << test.statistic << " standard errors";
-    EXPECT_LT(mean.standard_error() / exact, 0.02) << what << ": too few samples";
+    EXPECT_LT(mean.standard_error() / exact, 0.05) << what << ": too few samples";
   });
 }
 
@@ -272,7 +275,7 @@ struct Pair {
 };
 
 TEST(Agreement, OfTheIntegratorsThatResampleWithThoseThatDoNot) {
-  constexpr int image_px = 32, block_px = 16;
+  constexpr int image_px = 20, block_px = 10;
   for (const AgreementCase& c : agreement_cases()) {
     const LoadedScene loaded =
         load_scene_text(camera_xml({0, -6, 2.5}, {0, 0, 0.7}, 45, image_px, "sobol") + things_xml() + c.more);

@@ -1,9 +1,9 @@
 // The light tree: clusters hold what they say, and whatever reaches a receiver can be chosen for it, by a
 // walk and by a cut.
 //
-// Seen to fail when: importance has no slack, less slack, or the cosine of the wrong side of the lights'
-// normals; a cluster's sphere is that of its facets' centres; its cone is that of its facets' axes; spots
-// shine to a right angle whatever their cutoff; a cluster of a cut with little power gets no share.
+// Seen to fail when: importance has no slack, or takes the light's or the receiver's normal the wrong way
+// round; a cluster of a cut whose share rounds to 0 keeps none; a far facet's radius is measured to one
+// corner.
 #include "lightsampler/light_tree.h"
 
 #include "lightsampler/tree_lights.h"
