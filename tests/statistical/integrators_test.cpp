@@ -147,7 +147,7 @@ Film render_by(int threads, const Scene& scene, RenderSettings settings) {
 TEST(Bits, AreTheSameForAnyNumberOfThreadsAndAgain) {
   for (const char* integrator : {"mis", "direct_light"})
     for (const int samples : {1, 48, 1100}) {  // Many pixels a block, few, and more than one block a pixel.
-      const LoadedScene loaded = everything_scene(samples > 48 ? 20 : 40);
+      const LoadedScene loaded = everything_scene(samples > 48 ? 12 : 40);
       for (const Isa isa : available_isas()) {
         RenderSettings settings = render_settings(integrator, samples, samples == 1 ? 1 : 4, 5);
         settings.isa = isa;
@@ -251,7 +251,7 @@ TEST(Bits, DoNotDependOnTheOrderOfShadowRays) {
     for (const char* integrator : {"light", "path_mis", "direct_light", "path"}) {
       const bool is_direct = integrator == std::string("light") || integrator == std::string("direct_light");
       const Scene& scene = is_direct ? direct.scene : bounces.scene;
-      RenderSettings settings = render_settings(integrator, 64, 4, 6);
+      RenderSettings settings = render_settings(integrator, 16, 4, 6);
       settings.isa = isa;
       const Film aimed = render(scene, settings).film;
       settings.is_reordering = false;
