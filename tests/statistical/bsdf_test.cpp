@@ -47,7 +47,6 @@ class Random {
 };
 
 Vec3d wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
-Vec3f narrow(const Vec3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 /// Holds `draw`, which may lose samples (false), against `pdf`, direction by direction. The lost share is one
 /// more cell.
