@@ -112,10 +112,8 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
     json["heuristic"] = heuristic;
   json["light_sampler"] = settings.integrator.light_sampler();
   json["technique"] = settings.integrator.light_technique();
-  const PathRules* rules = settings.integrator.path_rules();
-  const bool samples_lights = rules && rules->light_samples();
-  json["candidates"] = samples_lights ? rules->candidates(0) : 0;
-  json["light_samples"] = samples_lights ? rules->light_count(0) : 0;
+  json["candidates"] = settings.integrator.candidates();
+  json["light_samples"] = settings.integrator.light_samples();
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = rendering.samples_per_pixel();
   json["replicates"] = result.replicates;

@@ -230,6 +230,16 @@ std::string_view IntegratorSettings::light_technique() const {
   return paths && paths->light_samples() ? light_technique_name(paths->light_samples()->technique) : "";
 }
 
+int IntegratorSettings::light_samples() const {
+  const PathRules* paths = path_rules();
+  return paths && paths->light_samples() ? paths->light_count(0) : 0;
+}
+
+int IntegratorSettings::candidates() const {
+  const PathRules* paths = path_rules();
+  return paths && paths->light_samples() ? paths->candidates(0) : 0;
+}
+
 std::string_view heuristic_name(const IntegratorSettings& integrator) {
   const PathRules* rules = integrator.path_rules();
   return rules && rules->needs_both_pdfs() ? name_of(*rules->heuristic()) : "";

@@ -74,10 +74,10 @@ TEST_F(CommandLine, LintSaysWhatIsOddAsJsonToo) {
 TEST_F(CommandLine, HelpOfRenderNamesEveryOption) {
   const ProgramResult help = run({"render", "--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* name :
-       {"SCENE", "-o,--output", "--integrator", "--sampler", "--light-sampler", "--candidates",
-        "--shadow-rays", "--weights", "--spp", "--replicates", "--replicates-by", "--seed", "--threads",
-        "--isa", "--stats", "--quiet", "--strict", "--dialect", "--replay"})
+  for (const char* name : {"SCENE",        "-o,--output",     "--integrator",  "--sampler", "--light-sampler",
+                           "--technique",  "--candidates",    "--shadow-rays", "--weights", "--spp",
+                           "--replicates", "--replicates-by", "--seed",        "--threads", "--isa",
+                           "--stats",      "--quiet",         "--strict",      "--dialect", "--replay"})
     EXPECT_THAT(help.out, HasSubstr(name));
 }
 
@@ -205,22 +205,25 @@ TEST_F(CommandLine, HowLightsAreSampledStandsInTheStats) {
     return json("s.json");
   };
   const auto expect = [](const nlohmann::json& stats, const std::string& integrator,
-                         const std::string& light_sampler, int light_samples, int candidates) {
+                         const std::string& light_sampler, const std::string& technique, int light_samples,
+                         int candidates) {
     EXPECT_EQ(stats.at("integrator"), integrator);
     EXPECT_EQ(stats.at("light_sampler"), light_sampler) << integrator;
+    EXPECT_EQ(stats.at("technique"), technique) << integrator;
     EXPECT_EQ(stats.at("light_samples"), light_samples) << integrator;
     EXPECT_EQ(stats.at("candidates"), candidates) << integrator;
   };
   // The scene names no integrator.
   const nlohmann::json plain = stats_with({});
-  expect(plain, "path", "tree", 4, 1);
+  expect(plain, "path", "tree", "auto", 4, 1);
   EXPECT_EQ(plain.at("heuristic"), "balance");
-  expect(stats_with({"--integrator", "direct_light"}), "direct_light", "tree", 4, 1);
-  expect(stats_with({"--integrator", "light"}), "light", "uniform", 1, 1);
-  expect(stats_with({"--integrator", "direct"}), "direct", "", 0, 0);
-  const nlohmann::json asked = stats_with({"--integrator", "mis", "--light-sampler", "power", "--shadow-rays",
-                                           "3", "--candidates", "5", "--weights", "power"});
-  expect(asked, "mis", "power", 3, 5);
+  expect(stats_with({"--integrator", "direct_light"}), "direct_light", "tree", "auto", 4, 1);
+  expect(stats_with({"--integrator", "light"}), "light", "uniform", "area", 1, 1);
+  expect(stats_with({"--integrator", "direct"}), "direct", "", "", 0, 0);
+  const nlohmann::json asked =
+      stats_with({"--integrator", "mis", "--light-sampler", "power", "--technique", "solid_angle",
+                  "--shadow-rays", "3", "--candidates", "5", "--weights", "power"});
+  expect(asked, "mis", "power", "solid_angle", 3, 5);
   EXPECT_EQ(asked.at("heuristic"), "power");
   const nlohmann::json one = stats_with({"--integrator", "light"}),
                        three = stats_with({"--integrator", "light", "--shadow-rays", "3"});
@@ -693,9 +696,9 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   // Over the light's density, the radiance exceeds the largest float.
   write_file(path("scene.xml"), scene_xml(4, 4, "3e38"));
   const std::vector<std::string> sampling{
-      "--integrator",  "mis", "--light-sampler", "tree",       "--candidates", "3",
-      "--shadow-rays", "2",   "--weights",       "power",      "--spp",        "8",
-      "--replicates",  "2",   "--replicates-by", "scrambling", "--seed",       "7"};
+      "--integrator",    "mis",        "--light-sampler", "tree",  "--technique", "auto", "--candidates", "3",
+      "--shadow-rays",   "2",          "--weights",       "power", "--spp",       "8",    "--replicates", "2",
+      "--replicates-by", "scrambling", "--seed",          "7"};
   std::vector<std::string> command{"render", "scene.xml", "-o",      "a.exr",
                                    "--isa",  "scalar",    "--stats", "s.json"};
   command.insert(command.end(), sampling.begin(), sampling.end());
@@ -705,8 +708,8 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   ASSERT_THAT(result.err, HasSubstr("samples were not finite, or were negative"));
   EXPECT_THAT(result.err, HasSubstr("the first went wrong at vertex 0: scene.xml:3:2: the rectangle 1\n"));
   const std::string start =
-      "  etendue render scene.xml --integrator mis --light-sampler tree --candidates 3 --shadow-rays 2 "
-      "--weights power --spp 8 --replicates 2 --replicates-by scrambling --seed 7 --replay ";
+      "  etendue render scene.xml --integrator mis --light-sampler tree --technique auto --candidates 3 "
+      "--shadow-rays 2 --weights power --spp 8 --replicates 2 --replicates-by scrambling --seed 7 --replay ";
   const std::size_t at = result.err.find(start);
   ASSERT_NE(at, std::string::npos) << result.err;
   const std::string id = result.err.substr(at + start.size(), result.err.find('\n', at) - at - start.size());
