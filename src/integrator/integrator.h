@@ -31,8 +31,6 @@ struct IntegratorSettings {
   std::string_view light_sampler() const;
   /// Where on a light its samples lie; empty where none are.
   std::string_view light_technique() const;
-  int light_samples() const;  ///< At the first vertex; 0 where lights are not sampled.
-  int candidates() const;     ///< Of each of them; 0 too where the scene is to decide: see settled().
 };
 
 const std::vector<Plugin>& integrator_plugins();

@@ -206,24 +206,25 @@ TEST_F(CommandLine, HowLightsAreSampledStandsInTheStats) {
   };
   const auto expect = [](const nlohmann::json& stats, const std::string& integrator,
                          const std::string& light_sampler, const std::string& technique, int light_samples,
-                         int candidates) {
+                         int candidates, int glossy_candidates) {
     EXPECT_EQ(stats.at("integrator"), integrator);
     EXPECT_EQ(stats.at("light_sampler"), light_sampler) << integrator;
     EXPECT_EQ(stats.at("technique"), technique) << integrator;
     EXPECT_EQ(stats.at("light_samples"), light_samples) << integrator;
     EXPECT_EQ(stats.at("candidates"), candidates) << integrator;
+    EXPECT_EQ(stats.at("glossy_candidates"), glossy_candidates) << integrator;
   };
   // The scene names no integrator.
   const nlohmann::json plain = stats_with({});
-  expect(plain, "path", "tree", "auto", 4, 1);
+  expect(plain, "path", "tree", "auto", 4, 1, 4);
   EXPECT_EQ(plain.at("heuristic"), "balance");
-  expect(stats_with({"--integrator", "direct_light"}), "direct_light", "tree", "auto", 4, 1);
-  expect(stats_with({"--integrator", "light"}), "light", "uniform", "area", 1, 1);
-  expect(stats_with({"--integrator", "direct"}), "direct", "", "", 0, 0);
+  expect(stats_with({"--integrator", "direct_light"}), "direct_light", "tree", "auto", 4, 1, 4);
+  expect(stats_with({"--integrator", "light"}), "light", "uniform", "area", 1, 1, 1);
+  expect(stats_with({"--integrator", "direct"}), "direct", "", "", 0, 0, 0);
   const nlohmann::json asked =
       stats_with({"--integrator", "mis", "--light-sampler", "power", "--technique", "solid_angle",
                   "--shadow-rays", "3", "--candidates", "5", "--weights", "power"});
-  expect(asked, "mis", "power", "solid_angle", 3, 5);
+  expect(asked, "mis", "power", "solid_angle", 3, 5, 5);
   EXPECT_EQ(asked.at("heuristic"), "power");
   const nlohmann::json one = stats_with({"--integrator", "light"}),
                        three = stats_with({"--integrator", "light", "--shadow-rays", "3"});
