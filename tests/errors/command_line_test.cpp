@@ -275,8 +275,8 @@ TEST_F(CommandLine, InfoListsEveryPluginWithItsParameters) {
 
 TEST_F(CommandLine, ProgressWithoutATerminalIsAtMostALineASecond) {
   write_file(path("scene.xml"), scene_xml(256, 256));
-  const ProgramResult result =
-      run({"render", "scene.xml", "-o", "a.exr", "--spp", "150", "--threads", "1", "--isa", "scalar"});
+  const ProgramResult result = run({"render", "scene.xml", "-o", "a.exr", "--spp", "150", "--threads", "1",
+                                    "--isa", "scalar", "--integrator", "light"});
   ASSERT_EQ(result.exit_code, 0);
   std::size_t lines = 0;
   for (std::size_t at = 0; (at = result.err.find("render: ", at)) != std::string::npos; ++at) ++lines;
@@ -301,9 +301,9 @@ bool same_pixels(const Image& a, const Image& b) {
 }
 
 /// Longer than any test waits, in replicates that take a fraction of a second.
-const std::vector<std::string> long_render{"render",    "scene.xml", "-o",        "a.exr",        "--stats",
-                                           "s.json",    "--spp",     "409600000", "--replicates", "4096000",
-                                           "--threads", "1",         "--sampler", "sobol"};
+const std::vector<std::string> long_render{
+    "render",       "scene.xml", "-o",        "a.exr", "--stats",   "s.json", "--spp",        "409600000",
+    "--replicates", "4096000",   "--threads", "1",     "--sampler", "sobol",  "--integrator", "light"};
 
 TEST_F(CommandLine, AnInterruptLeavesTheWholeImageOfFewerReplicates) {
   for (const std::string by : {"block", "scrambling"}) {
@@ -329,10 +329,11 @@ TEST_F(CommandLine, AnInterruptLeavesTheWholeImageOfFewerReplicates) {
     EXPECT_EQ(metadata(image, "replicates"), "0-" + std::to_string(replicates - 1));
     EXPECT_EQ(metadata(image, "samplesPerPixel"), std::to_string(samples));
     EXPECT_EQ(metadata(image, "replicatesBy"), by);
-    ASSERT_EQ(run({"render", "scene.xml", "-o", "b.exr", "--spp", std::to_string(samples), "--replicates",
-                   std::to_string(replicates), "--replicates-by", by, "--sampler", "sobol"})
-                  .exit_code,
-              0);
+    ASSERT_EQ(
+        run({"render", "scene.xml", "-o", "b.exr", "--integrator", "light", "--spp", std::to_string(samples),
+             "--replicates", std::to_string(replicates), "--replicates-by", by, "--sampler", "sobol"})
+            .exit_code,
+        0);
     EXPECT_TRUE(same_pixels(image, read_exr(path("b.exr"))));
   }
 }
@@ -358,7 +359,7 @@ TEST_F(CommandLine, AFragmentGoesToAPartialNameOfItsOwn) {
   write_file(path("s.json"), "of a finished render");
   // A replicate of every pixel takes minutes.
   Program program({"render", "scene.xml", "-o", "a.exr", "-o", "a.png", "--stats", "s.json", "--spp", "40000",
-                   "--replicates", "2", "--threads", "1", "--isa", "scalar"},
+                   "--replicates", "2", "--threads", "1", "--isa", "scalar", "--integrator", "light"},
                   folder_.path());
   program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
   program.send(SIGHUP);
@@ -384,7 +385,7 @@ TEST_F(CommandLine, AFragmentGoesToAPartialNameOfItsOwn) {
 TEST_F(CommandLine, ASecondSignalEndsTheFirstPass) {
   // The first pass takes some seconds.
   Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "12000", "--replicates", "2", "--threads",
-                   "1", "--isa", "scalar"},
+                   "1", "--isa", "scalar", "--integrator", "light"},
                   folder_.path());
   program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
   program.send(SIGINT);
@@ -409,7 +410,7 @@ TEST_F(CommandLine, SignalsAtAnyTimeLeaveAWholeImageAndTheFinishedOne) {
     const std::string finished = "finished " + std::to_string(k);
     if (has_finished_one) write_file(path("out/a.exr"), finished);
     Program program({"render", "scene.xml", "-o", "out/a.exr", "--spp", "400000", "--replicates", "400",
-                     "--threads", "1", "--sampler", "sobol"},
+                     "--threads", "1", "--sampler", "sobol", "--integrator", "light"},
                     folder_.path());
     program.wait_until([&] { return program.err_so_far().find("samples a pixel") != std::string::npos; });
     std::this_thread::sleep_for(std::chrono::milliseconds(engine() % 100));
@@ -444,9 +445,9 @@ TEST_F(CommandLine, TheImageIsSavedThoughNobodyReadsWhatIsSaid) {
 }
 
 /// The first pass takes minutes.
-const std::vector<std::string> long_first_pass{"render",    "scene.xml", "-o",           "a.exr",
-                                               "--spp",     "4000000",   "--replicates", "2",
-                                               "--threads", "1",         "--isa",        "scalar"};
+const std::vector<std::string> long_first_pass{
+    "render", "scene.xml", "-o", "a.exr", "--spp",  "4000000",      "--replicates",
+    "2",      "--threads", "1",  "--isa", "scalar", "--integrator", "light"};
 
 TEST_F(CommandLine, ASignalSoonAfterOneThatWasPassedOverIsObeyed) {
   write_file(path("scene.xml"), scene_xml(256, 256));
@@ -475,7 +476,7 @@ TEST_F(CommandLine, ASignalSoonAfterOneThatWasPassedOverIsObeyed) {
 TEST_F(CommandLine, AFragmentWithoutPixelsIsNotSaved) {
   write_file(path("scene.xml"), scene_xml(1, 1));
   std::vector<std::string> command = long_first_pass;
-  command[5] = "1000000000";
+  command[5] = "2000000000";
   command.push_back("--quiet");
   Program program(command, folder_.path());
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
@@ -512,7 +513,7 @@ TEST_F(CommandLine, APartialImageBesideAFinishedOneIsPointedOutAndKept) {
 TEST_F(CommandLine, AWholeImageOfOneReplicateSaysThatItsErrorIsUnknown) {
   // A pass takes some seconds; the second one is given up at once.
   Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "12000", "--replicates", "2", "--threads",
-                   "1", "--isa", "scalar"},
+                   "1", "--isa", "scalar", "--integrator", "light"},
                   folder_.path());
   program.wait_until([&] {
     const std::string said = program.err_so_far();
@@ -679,8 +680,9 @@ TEST_F(CommandLine, AFailedRenderLeavesTheOldImage) {
 
 TEST_F(CommandLine, AKilledRenderLeavesTheOldImage) {
   write_file(path("a.exr"), "old");
-  Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "10000000", "--threads", "1"},
-                  folder_.path());
+  Program program(
+      {"render", "scene.xml", "-o", "a.exr", "--spp", "10000000", "--threads", "1", "--integrator", "light"},
+      folder_.path());
   program.wait_until([&] { return !program.err_so_far().empty(); });
   program.send(SIGKILL);
   EXPECT_EQ(program.wait().exit_code, -SIGKILL);
