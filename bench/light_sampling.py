@@ -30,7 +30,9 @@ WAYS = {
     "mis, weights by power": ["--integrator", "mis", "--weights", "power"],
     "mis, lights by power": ["--integrator", "mis", "--light-sampler", "power"],
     "mis, light tree": ["--integrator", "mis", "--light-sampler", "tree"],
-    "the same, 4 candidates": ["--integrator", "mis", "--light-sampler", "tree", "--candidates", "4"],
+    "mis, light tree, points by auto": ["--integrator", "mis", "--light-sampler", "tree", "--technique", "auto"],
+    "the same, 4 candidates": ["--integrator", "mis", "--light-sampler", "tree", "--technique", "auto",
+                               "--candidates", "4"],
     "direct_light, 1 shadow ray": ["--integrator", "direct_light", "--shadow-rays", "1"],
     "direct_light": ["--integrator", "direct_light"],
 }

@@ -56,6 +56,11 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendering& rende
     fields.emplace_back("lightSampler", light_sampler);
   if (const std::string_view technique = settings.integrator.light_technique(); !technique.empty())
     fields.emplace_back("technique", technique);
+  if (const PathRules* rules = rendering.light_rules()) {
+    fields.emplace_back("lightSamples", std::to_string(rules->light_count(0)));
+    fields.emplace_back("candidates", std::to_string(rules->candidates(0)));
+    fields.emplace_back("glossyCandidates", std::to_string(rules->glossy_candidates(0)));
+  }
   return fields;
 }
 

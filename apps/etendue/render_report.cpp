@@ -97,6 +97,11 @@ std::int64_t Rendering::pixels_rendered() const {
   return count;
 }
 
+const PathRules* Rendering::light_rules() const {
+  const PathRules* rules = settings.integrator.path_rules();
+  return rules && rules->light_samples() ? rules : nullptr;
+}
+
 nlohmann::ordered_json stats(const Rendering& rendering) {
   const RenderSettings& settings = rendering.settings;
   const LoadedScene& loaded = rendering.loaded;
@@ -112,10 +117,10 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
     json["heuristic"] = heuristic;
   json["light_sampler"] = settings.integrator.light_sampler();
   json["technique"] = settings.integrator.light_technique();
-  const PathRules* rules = settings.integrator.path_rules();
-  const bool samples_lights = rules && rules->light_samples();
-  json["candidates"] = samples_lights ? rules->candidates(0) : 0;
-  json["light_samples"] = samples_lights ? rules->light_count(0) : 0;
+  const PathRules* rules = rendering.light_rules();
+  json["light_samples"] = rules ? rules->light_count(0) : 0;
+  json["candidates"] = rules ? rules->candidates(0) : 0;
+  json["glossy_candidates"] = rules ? rules->glossy_candidates(0) : 0;
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = rendering.samples_per_pixel();
   json["replicates"] = result.replicates;

@@ -23,6 +23,7 @@ struct Rendering {
   int samples_per_pixel() const { return result.replicates * settings.samples_per_replicate(); }
   std::int64_t pixels() const { return std::int64_t(result.film.width()) * result.film.height(); }
   std::int64_t pixels_rendered() const;
+  const PathRules* light_rules() const;  ///< Null where lights are not sampled.
 };
 
 nlohmann::ordered_json stats(const Rendering& rendering);

@@ -165,6 +165,7 @@ std::string text_of(const LightSamples& lights) {
   if (lights.later_count > 0) text += fmt::format(" later_light_samples={}", lights.later_count);
   if (lights.candidates == 0) text += " candidates=by_scene";
   if (lights.candidates > 1) text += fmt::format(" candidates={}", lights.candidates);
+  if (lights.glossy_candidates > 0) text += fmt::format(" glossy_candidates={}", lights.glossy_candidates);
   if (lights.technique != LightTechnique::area)
     text += fmt::format(" technique={}", light_technique_name(lights.technique));
   return text;

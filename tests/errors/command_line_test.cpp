@@ -74,10 +74,10 @@ TEST_F(CommandLine, LintSaysWhatIsOddAsJsonToo) {
 TEST_F(CommandLine, HelpOfRenderNamesEveryOption) {
   const ProgramResult help = run({"render", "--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* name :
-       {"SCENE", "-o,--output", "--integrator", "--sampler", "--light-sampler", "--candidates",
-        "--shadow-rays", "--weights", "--spp", "--replicates", "--replicates-by", "--seed", "--threads",
-        "--isa", "--stats", "--quiet", "--strict", "--dialect", "--replay"})
+  for (const char* name : {"SCENE",        "-o,--output",     "--integrator",  "--sampler", "--light-sampler",
+                           "--technique",  "--candidates",    "--shadow-rays", "--weights", "--spp",
+                           "--replicates", "--replicates-by", "--seed",        "--threads", "--isa",
+                           "--stats",      "--quiet",         "--strict",      "--dialect", "--replay"})
     EXPECT_THAT(help.out, HasSubstr(name));
 }
 
@@ -205,22 +205,26 @@ TEST_F(CommandLine, HowLightsAreSampledStandsInTheStats) {
     return json("s.json");
   };
   const auto expect = [](const nlohmann::json& stats, const std::string& integrator,
-                         const std::string& light_sampler, int light_samples, int candidates) {
+                         const std::string& light_sampler, const std::string& technique, int light_samples,
+                         int candidates, int glossy_candidates) {
     EXPECT_EQ(stats.at("integrator"), integrator);
     EXPECT_EQ(stats.at("light_sampler"), light_sampler) << integrator;
+    EXPECT_EQ(stats.at("technique"), technique) << integrator;
     EXPECT_EQ(stats.at("light_samples"), light_samples) << integrator;
     EXPECT_EQ(stats.at("candidates"), candidates) << integrator;
+    EXPECT_EQ(stats.at("glossy_candidates"), glossy_candidates) << integrator;
   };
   // The scene names no integrator.
   const nlohmann::json plain = stats_with({});
-  expect(plain, "path", "tree", 4, 1);
+  expect(plain, "path", "tree", "auto", 4, 1, 4);
   EXPECT_EQ(plain.at("heuristic"), "balance");
-  expect(stats_with({"--integrator", "direct_light"}), "direct_light", "tree", 4, 1);
-  expect(stats_with({"--integrator", "light"}), "light", "uniform", 1, 1);
-  expect(stats_with({"--integrator", "direct"}), "direct", "", 0, 0);
-  const nlohmann::json asked = stats_with({"--integrator", "mis", "--light-sampler", "power", "--shadow-rays",
-                                           "3", "--candidates", "5", "--weights", "power"});
-  expect(asked, "mis", "power", 3, 5);
+  expect(stats_with({"--integrator", "direct_light"}), "direct_light", "tree", "auto", 4, 1, 4);
+  expect(stats_with({"--integrator", "light"}), "light", "uniform", "area", 1, 1, 1);
+  expect(stats_with({"--integrator", "direct"}), "direct", "", "", 0, 0, 0);
+  const nlohmann::json asked =
+      stats_with({"--integrator", "mis", "--light-sampler", "power", "--technique", "solid_angle",
+                  "--shadow-rays", "3", "--candidates", "5", "--weights", "power"});
+  expect(asked, "mis", "power", "solid_angle", 3, 5, 5);
   EXPECT_EQ(asked.at("heuristic"), "power");
   const nlohmann::json one = stats_with({"--integrator", "light"}),
                        three = stats_with({"--integrator", "light", "--shadow-rays", "3"});
@@ -271,8 +275,8 @@ TEST_F(CommandLine, InfoListsEveryPluginWithItsParameters) {
 
 TEST_F(CommandLine, ProgressWithoutATerminalIsAtMostALineASecond) {
   write_file(path("scene.xml"), scene_xml(256, 256));
-  const ProgramResult result =
-      run({"render", "scene.xml", "-o", "a.exr", "--spp", "150", "--threads", "1", "--isa", "scalar"});
+  const ProgramResult result = run({"render", "scene.xml", "-o", "a.exr", "--spp", "150", "--threads", "1",
+                                    "--isa", "scalar", "--integrator", "light"});
   ASSERT_EQ(result.exit_code, 0);
   std::size_t lines = 0;
   for (std::size_t at = 0; (at = result.err.find("render: ", at)) != std::string::npos; ++at) ++lines;
@@ -297,9 +301,9 @@ bool same_pixels(const Image& a, const Image& b) {
 }
 
 /// Longer than any test waits, in replicates that take a fraction of a second.
-const std::vector<std::string> long_render{"render",    "scene.xml", "-o",        "a.exr",        "--stats",
-                                           "s.json",    "--spp",     "409600000", "--replicates", "4096000",
-                                           "--threads", "1",         "--sampler", "sobol"};
+const std::vector<std::string> long_render{
+    "render",       "scene.xml", "-o",        "a.exr", "--stats",   "s.json", "--spp",        "409600000",
+    "--replicates", "4096000",   "--threads", "1",     "--sampler", "sobol",  "--integrator", "light"};
 
 TEST_F(CommandLine, AnInterruptLeavesTheWholeImageOfFewerReplicates) {
   for (const std::string by : {"block", "scrambling"}) {
@@ -325,10 +329,11 @@ TEST_F(CommandLine, AnInterruptLeavesTheWholeImageOfFewerReplicates) {
     EXPECT_EQ(metadata(image, "replicates"), "0-" + std::to_string(replicates - 1));
     EXPECT_EQ(metadata(image, "samplesPerPixel"), std::to_string(samples));
     EXPECT_EQ(metadata(image, "replicatesBy"), by);
-    ASSERT_EQ(run({"render", "scene.xml", "-o", "b.exr", "--spp", std::to_string(samples), "--replicates",
-                   std::to_string(replicates), "--replicates-by", by, "--sampler", "sobol"})
-                  .exit_code,
-              0);
+    ASSERT_EQ(
+        run({"render", "scene.xml", "-o", "b.exr", "--integrator", "light", "--spp", std::to_string(samples),
+             "--replicates", std::to_string(replicates), "--replicates-by", by, "--sampler", "sobol"})
+            .exit_code,
+        0);
     EXPECT_TRUE(same_pixels(image, read_exr(path("b.exr"))));
   }
 }
@@ -354,7 +359,7 @@ TEST_F(CommandLine, AFragmentGoesToAPartialNameOfItsOwn) {
   write_file(path("s.json"), "of a finished render");
   // A replicate of every pixel takes minutes.
   Program program({"render", "scene.xml", "-o", "a.exr", "-o", "a.png", "--stats", "s.json", "--spp", "40000",
-                   "--replicates", "2", "--threads", "1", "--isa", "scalar"},
+                   "--replicates", "2", "--threads", "1", "--isa", "scalar", "--integrator", "light"},
                   folder_.path());
   program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
   program.send(SIGHUP);
@@ -380,7 +385,7 @@ TEST_F(CommandLine, AFragmentGoesToAPartialNameOfItsOwn) {
 TEST_F(CommandLine, ASecondSignalEndsTheFirstPass) {
   // The first pass takes some seconds.
   Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "12000", "--replicates", "2", "--threads",
-                   "1", "--isa", "scalar"},
+                   "1", "--isa", "scalar", "--integrator", "light"},
                   folder_.path());
   program.wait_until([&] { return program.err_so_far().find("render: ") != std::string::npos; });
   program.send(SIGINT);
@@ -405,7 +410,7 @@ TEST_F(CommandLine, SignalsAtAnyTimeLeaveAWholeImageAndTheFinishedOne) {
     const std::string finished = "finished " + std::to_string(k);
     if (has_finished_one) write_file(path("out/a.exr"), finished);
     Program program({"render", "scene.xml", "-o", "out/a.exr", "--spp", "400000", "--replicates", "400",
-                     "--threads", "1", "--sampler", "sobol"},
+                     "--threads", "1", "--sampler", "sobol", "--integrator", "light"},
                     folder_.path());
     program.wait_until([&] { return program.err_so_far().find("samples a pixel") != std::string::npos; });
     std::this_thread::sleep_for(std::chrono::milliseconds(engine() % 100));
@@ -440,9 +445,9 @@ TEST_F(CommandLine, TheImageIsSavedThoughNobodyReadsWhatIsSaid) {
 }
 
 /// The first pass takes minutes.
-const std::vector<std::string> long_first_pass{"render",    "scene.xml", "-o",           "a.exr",
-                                               "--spp",     "4000000",   "--replicates", "2",
-                                               "--threads", "1",         "--isa",        "scalar"};
+const std::vector<std::string> long_first_pass{
+    "render", "scene.xml", "-o", "a.exr", "--spp",  "4000000",      "--replicates",
+    "2",      "--threads", "1",  "--isa", "scalar", "--integrator", "light"};
 
 TEST_F(CommandLine, ASignalSoonAfterOneThatWasPassedOverIsObeyed) {
   write_file(path("scene.xml"), scene_xml(256, 256));
@@ -471,7 +476,7 @@ TEST_F(CommandLine, ASignalSoonAfterOneThatWasPassedOverIsObeyed) {
 TEST_F(CommandLine, AFragmentWithoutPixelsIsNotSaved) {
   write_file(path("scene.xml"), scene_xml(1, 1));
   std::vector<std::string> command = long_first_pass;
-  command[5] = "1000000000";
+  command[5] = "2000000000";
   command.push_back("--quiet");
   Program program(command, folder_.path());
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
@@ -508,7 +513,7 @@ TEST_F(CommandLine, APartialImageBesideAFinishedOneIsPointedOutAndKept) {
 TEST_F(CommandLine, AWholeImageOfOneReplicateSaysThatItsErrorIsUnknown) {
   // A pass takes some seconds; the second one is given up at once.
   Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "12000", "--replicates", "2", "--threads",
-                   "1", "--isa", "scalar"},
+                   "1", "--isa", "scalar", "--integrator", "light"},
                   folder_.path());
   program.wait_until([&] {
     const std::string said = program.err_so_far();
@@ -675,8 +680,9 @@ TEST_F(CommandLine, AFailedRenderLeavesTheOldImage) {
 
 TEST_F(CommandLine, AKilledRenderLeavesTheOldImage) {
   write_file(path("a.exr"), "old");
-  Program program({"render", "scene.xml", "-o", "a.exr", "--spp", "10000000", "--threads", "1"},
-                  folder_.path());
+  Program program(
+      {"render", "scene.xml", "-o", "a.exr", "--spp", "10000000", "--threads", "1", "--integrator", "light"},
+      folder_.path());
   program.wait_until([&] { return !program.err_so_far().empty(); });
   program.send(SIGKILL);
   EXPECT_EQ(program.wait().exit_code, -SIGKILL);
@@ -693,9 +699,9 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   // Over the light's density, the radiance exceeds the largest float.
   write_file(path("scene.xml"), scene_xml(4, 4, "3e38"));
   const std::vector<std::string> sampling{
-      "--integrator",  "mis", "--light-sampler", "tree",       "--candidates", "3",
-      "--shadow-rays", "2",   "--weights",       "power",      "--spp",        "8",
-      "--replicates",  "2",   "--replicates-by", "scrambling", "--seed",       "7"};
+      "--integrator",    "mis",        "--light-sampler", "tree",  "--technique", "auto", "--candidates", "3",
+      "--shadow-rays",   "2",          "--weights",       "power", "--spp",       "8",    "--replicates", "2",
+      "--replicates-by", "scrambling", "--seed",          "7"};
   std::vector<std::string> command{"render", "scene.xml", "-o",      "a.exr",
                                    "--isa",  "scalar",    "--stats", "s.json"};
   command.insert(command.end(), sampling.begin(), sampling.end());
@@ -705,8 +711,8 @@ TEST_F(CommandLine, ABadSampleIsReportedWithTheCommandThatReplaysIt) {
   ASSERT_THAT(result.err, HasSubstr("samples were not finite, or were negative"));
   EXPECT_THAT(result.err, HasSubstr("the first went wrong at vertex 0: scene.xml:3:2: the rectangle 1\n"));
   const std::string start =
-      "  etendue render scene.xml --integrator mis --light-sampler tree --candidates 3 --shadow-rays 2 "
-      "--weights power --spp 8 --replicates 2 --replicates-by scrambling --seed 7 --replay ";
+      "  etendue render scene.xml --integrator mis --light-sampler tree --technique auto --candidates 3 "
+      "--shadow-rays 2 --weights power --spp 8 --replicates 2 --replicates-by scrambling --seed 7 --replay ";
   const std::size_t at = result.err.find(start);
   ASSERT_NE(at, std::string::npos) << result.err;
   const std::string id = result.err.substr(at + start.size(), result.err.find('\n', at) - at - start.size());

@@ -161,6 +161,8 @@ TEST(LightSamplesOfAnIntegrator, AreAsManyAsAskedForAtTheFirstVertex) {
   EXPECT_EQ(rules_of(candidates).candidates(0), 7);
   EXPECT_EQ(rules_of(candidates).candidates(1), 1);
   EXPECT_EQ(rules_of(candidates).light_draws(0), 35);
+  EXPECT_EQ(with_light_technique(paths, "projected").light_technique(), "projected");
+  EXPECT_EQ(rules_of(with_light_technique(with_light_technique(paths, "auto"), "area")), rules_of(paths));
   for (const int number : {0, -1, 65537})
     EXPECT_THAT(test::error_of([&] { with_shadow_rays(integrator_from_name("light"), number); }),
                 HasSubstr("expected from 1 to 65536"));
@@ -171,6 +173,8 @@ TEST(LightSamplesOfAnIntegrator, AreAsManyAsAskedForAtTheFirstVertex) {
     EXPECT_THAT(test::error_of([&] { with_shadow_rays(integrator_from_name(name), 2); }),
                 HasSubstr("takes no samples of the lights"));
     EXPECT_THAT(test::error_of([&] { with_candidates(integrator_from_name(name), 2); }),
+                HasSubstr("takes no samples of the lights"));
+    EXPECT_THAT(test::error_of([&] { with_light_technique(integrator_from_name(name), "area"); }),
                 HasSubstr("takes no samples of the lights"));
   }
 }
