@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/frame.h"
+#include "integrator/block_receiver.h"
 #include "integrator/camera_stage.h"
 #include "integrator/contribution.h"
 #include "integrator/vertex.h"
@@ -65,9 +66,9 @@ template <class F>
     Mask<F> goes_on =
         mask_and(vertex.is_there, is_number, sample.pdf_solid_angle > F(0), mask_not(is_black(throughput)),
                  mask_or(is_dirac, vertex.is_consistent(wo_local.z, sample.wi_local.z, wi)));
-    const Mask<F> is_alone = vertex.leaves_direct_light_to_lights(scene);
-    if (rules.is_shared_only_where_glossy() && rules.length() == PathLength::one_vertex)
-      goes_on = mask_and(goes_on, mask_not(is_alone));
+    const Mask<F> is_alone =
+        rules.is_shared_only_where_glossy() ? vertex.leaves_direct_light_to_lights(scene) : F(1) < F(0);
+    if (rules.length() == PathLength::one_vertex) goes_on = mask_and(goes_on, mask_not(is_alone));
     if (rules.is_dirac_only()) goes_on = mask_and(goes_on, is_dirac);
     if (vertex_number >= first_roulette_vertex) {
       const F probability = survival(throughput, eta);
@@ -80,18 +81,10 @@ template <class F>
     store_lanes(block.next_ray.origin, i, vertex.origin_of_ray(wi));
     store_lanes(block.next_ray.direction, i, wi);
     store_lanes(path.throughput, i, throughput);
-    F pdf = sample.pdf_solid_angle;
-    if (rules.is_shared_only_where_glossy()) pdf = select(is_alone, F(0), pdf);
-    store_lanes(&path.pdf[i], pdf);
+    store_lanes(&path.pdf[i], select(is_alone, F(0), sample.pdf_solid_angle));
     store_lanes(&path.eta[i], eta);
-    if (rules.needs_both_pdfs()) {
-      Receiver<F> receiver = vertex.receiver(scene);
-      if (vertex_number == 0 && block.has_cuts) {
-        receiver.cuts = &block.cuts;
-        receiver.cut = load_lanes<Int<F>>(&block.cut[i]);
-      }
-      store_receiver(path.receiver, i, receiver);
-    }
+    if (rules.needs_both_pdfs())
+      store_receiver(path.receiver, i, receiver_at<F>(scene, block, i, vertex, vertex_number));
   }
   block.clock.finish(Stage::bsdf_samples);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrator/aiming_stage.h"
+#include "integrator/block_receiver.h"
 #include "integrator/camera_stage.h"
 #include "integrator/contribution.h"
 #include "integrator/direct_light.h"
@@ -25,11 +26,7 @@ DirectLightSample<F> light_sample_of(const Scene& scene, const LightSampler& lig
                                      const PathRules& rules, const SampleBlock& block, int i,
                                      const Vertex<F>& vertex, const LightSampleNumber& which) {
   using U = UInt<F>;
-  Receiver<F> receiver = vertex.receiver(scene);
-  if (which.vertex == 0 && block.has_cuts) {
-    receiver.cuts = &block.cuts;
-    receiver.cut = load_lanes<Int<F>>(&block.cut[i]);
-  }
+  const Receiver<F> receiver = receiver_at<F>(scene, block, i, vertex, which.vertex);
   const int light_samples = rules.light_count(which.vertex), few = rules.candidates(which.vertex),
             many = rules.glossy_candidates(which.vertex);
   Int<F> candidates(many);

@@ -6,6 +6,7 @@
 #include "integrator/sample_block.h"
 #include "integrator/vertex.h"
 #include "lightsampler/light_sampler.h"
+#include "lightsampler/make_light_cut.h"
 
 #include <algorithm>
 #include <limits>
@@ -46,15 +47,14 @@ struct PilotLobes {
 /// The receivers that the pilot rays of a tile meet, in a grid over it and through the middle of the lens.
 /// They decide how lights are chosen, never what a sample is worth.
 template <class F>
-void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int slot, std::int32_t tile,
-              int tiles_across) {
+LightCut make_cut(const Scene& scene, const LightTree& tree, std::int32_t tile, int tiles_across) {
   constexpr int side = 4;
-  static_assert(side * side == LightCuts::pilots && LightCuts::pilots % lane_count_v<F> == 0);
+  static_assert(side * side == light_cut_pilots && light_cut_pilots % lane_count_v<F> == 0);
   const int x_px = tile % tiles_across * LightCut::tile_px, y_px = tile / tiles_across * LightCut::tile_px;
   const float width_px = float(std::min(LightCut::tile_px, scene.camera.width_px - x_px)),
               height_px = float(std::min(LightCut::tile_px, scene.camera.height_px - y_px));
-  alignas(64) std::array<float, LightCuts::pilots> x, y;
-  for (int k = 0; k < LightCuts::pilots; ++k) {
+  alignas(64) std::array<float, light_cut_pilots> x, y;
+  for (int k = 0; k < light_cut_pilots; ++k) {
     x[std::size_t(k)] = float(x_px) + width_px * (float(k % side) + 0.5f) / side;
     y[std::size_t(k)] = float(y_px) + height_px * (float(k / side) + 0.5f) / side;
   }
@@ -63,7 +63,7 @@ void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int sl
     HitColumns hit;
   };
   static thread_local Pilots pilots;
-  constexpr int packets = LightCuts::pilots / lane_count_v<F>;
+  constexpr int packets = light_cut_pilots / lane_count_v<F>;
   for (int p = 0; p < packets; ++p) {
     const int i = p * lane_count_v<F>;
     const F x_lanes = load_lanes<F>(&x[std::size_t(i)]), y_lanes = load_lanes<F>(&y[std::size_t(i)]);
@@ -79,7 +79,7 @@ void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int sl
   HitColumns& hits = pilots.hit;
   scene.rays.closest_hits({rays.origin.x.data(), rays.origin.y.data(), rays.origin.z.data(),
                            rays.direction.x.data(), rays.direction.y.data(), rays.direction.z.data(),
-                           rays.t_near.data(), rays.t_far.data(), rays.is_active.data(), LightCuts::pilots},
+                           rays.t_near.data(), rays.t_far.data(), rays.is_active.data(), light_cut_pilots},
                           {hits.t.data(), hits.ng.x.data(), hits.ng.y.data(), hits.ng.z.data(), hits.u.data(),
                            hits.v.data(), hits.geometry.data(), hits.primitive.data()},
                           lane_count_v<F>, Coherence::coherent);
@@ -99,10 +99,10 @@ void make_cut(const Scene& scene, const LightTree& tree, LightCuts& cuts, int sl
         !any(mask_and(is_lit[std::size_t(p)], mask_not(scene.materials.is_diffuse<F>(vertex.material))));
   }
   if (is_all_diffuse) {
-    cuts.make<F>(slot, tree, receivers.data(), is_lit.data(), [](int, const Importance<F>&) { return F(1); });
-    return;
+    return make_light_cut<F>(tree, receivers.data(), is_lit.data(),
+                             [](int, const Importance<F>&) { return F(1); });
   }
-  cuts.make<F>(slot, tree, receivers.data(), is_lit.data(), [&](int p, const Importance<F>& of) {
+  return make_light_cut<F>(tree, receivers.data(), is_lit.data(), [&](int p, const Importance<F>& of) {
     return lobes[std::size_t(p)].density_at_most(scene, of);
   });
 }
@@ -126,9 +126,8 @@ void make_cuts(const Scene& scene, const LightSampler& light_sampler, SampleBloc
     }
     block.cut[i] = slot;
   }
-  block.cuts.take_tiles(tiles, block.cut_store, [&](int missing, std::int32_t tile) {
-    make_cut<F>(scene, *tree, block.cuts, missing, tile, tiles_across);
-  });
+  block.cuts.take_tiles(tiles, block.cut_store,
+                        [&](std::int32_t tile) { return make_cut<F>(scene, *tree, tile, tiles_across); });
   block.clock.finish(Stage::pilots);
 }
 

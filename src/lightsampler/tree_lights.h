@@ -2,7 +2,6 @@
 // it.
 #pragma once
 
-#include "light/inversion_table.h"
 #include "lightsampler/light_choice.h"
 #include "lightsampler/light_cuts.h"
 #include "lightsampler/light_tree.h"

@@ -8,6 +8,7 @@
 // not stretch the number; the pmf within a leaf is left out.
 #include "lightsampler/light_sampler.h"
 
+#include "lightsampler/make_light_cut.h"
 #include "lightsampler/tree_lights.h"
 #include "random_lights.h"
 #include "stats/chi_squared.h"
@@ -249,15 +250,15 @@ TEST_P(LightsByTree, ACutChoosesFacetsWithTheirProbability) {
   if (sampler.tree().is_empty()) return;
   const std::vector<ReceiverCase> cases = receivers_around(GetParam().swarm, 42, 8);
   LightCuts cuts;
-  cuts.take_tiles({5, 9, 2}, nullptr, [&](int slot, std::int32_t) {
+  cuts.take_tiles({1, 0, 2}, nullptr, [&](std::int32_t tile) {
     std::vector<Receiver<float>> pilots;
-    std::array<bool, LightCuts::pilots> is_lit{};
-    for (std::size_t k = 0; k < LightCuts::pilots; ++k) {
+    std::array<bool, light_cut_pilots> is_lit{};
+    for (std::size_t k = 0; k < light_cut_pilots; ++k) {
       pilots.push_back(cases[k % cases.size()].receiver);
-      is_lit[k] = slot > 0 && k % 3 != std::size_t(slot);  // None in the first.
+      is_lit[k] = tile > 0 && k % 3 != std::size_t(tile);  // None in one of them.
     }
-    cuts.make<float>(slot, sampler.tree(), pilots.data(), is_lit.data(),
-                     [](int p, const Importance<float>&) { return 1 + float(p % 4); });
+    return make_light_cut<float>(sampler.tree(), pilots.data(), is_lit.data(),
+                                 [](int p, const Importance<float>&) { return 1 + float(p % 4); });
   });
   for (std::int32_t slot = 0; slot < 3; ++slot) {
     Receiver<float> receiver = receivers_around(GetParam().swarm, 43, 3)[std::size_t(slot)].receiver;

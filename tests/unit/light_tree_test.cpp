@@ -6,6 +6,7 @@
 // corner.
 #include "lightsampler/light_tree.h"
 
+#include "lightsampler/make_light_cut.h"
 #include "lightsampler/tree_lights.h"
 #include "random_lights.h"
 
@@ -281,16 +282,16 @@ struct MadeCut {
   Receiver<float> receiver{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, lit_side::front};
 
   MadeCut(const LightTree& tree, RandomPlaces& random, const Vec3f& center, float extent, int lit) {
-    cuts.take_tiles({7, 3}, nullptr, [&](int slot, std::int32_t) {
-      std::array<Receiver<float>, LightCuts::pilots> pilots;
-      std::array<bool, LightCuts::pilots> is_lit{};
-      for (int k = 0; k < LightCuts::pilots; ++k) {
+    cuts.take_tiles({7, 3}, nullptr, [&](std::int32_t) {
+      std::array<Receiver<float>, light_cut_pilots> pilots;
+      std::array<bool, light_cut_pilots> is_lit{};
+      for (int k = 0; k < light_cut_pilots; ++k) {
         const Vec3f normal = random.direction();
         pilots[std::size_t(k)] = {center + random.in_cube(extent), normal, normal, lit_side::front};
         is_lit[std::size_t(k)] = k < lit;
       }
-      cuts.make<float>(slot, tree, pilots.data(), is_lit.data(),
-                       [](int p, const Importance<float>&) { return 1.0f + 0.1f * float(p); });
+      return make_light_cut<float>(tree, pilots.data(), is_lit.data(),
+                                   [](int p, const Importance<float>&) { return 1.0f + 0.1f * float(p); });
     });
     receiver.cuts = &cuts;
     receiver.cut = 1;
@@ -305,7 +306,7 @@ TEST(LightCuts, CanChooseWhateverHasPower) {
     const LightCluster& root = tree.clusters()[0];
     double total = 0;
     for (std::int32_t light = 0; light < c.lights.count(); ++light) total += c.lights.power(light);
-    for (const int lit : {0, 1, LightCuts::pilots}) {
+    for (const int lit : {0, 1, light_cut_pilots}) {
       const MadeCut cut(tree, random, root.center, 2 * std::sqrt(root.radius_sq), lit);
       double sum = 0;
       for (std::int32_t place = 0; place < tree.facet_count(); ++place) {
@@ -325,13 +326,13 @@ TEST(LightCuts, AreMadeOnceWhereTheyAreKept) {
   LightCutStore store(10);
   LightCuts cuts, others;
   const Receiver<float> pilot{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, lit_side::front};
-  const std::array<bool, LightCuts::pilots> is_lit{};
+  const std::array<bool, light_cut_pilots> is_lit{};
   int made = 0;
   const auto take = [&](LightCuts& of, const std::vector<std::int32_t>& tiles) {
-    of.take_tiles(tiles, &store, [&](int slot, std::int32_t) {
-      const std::vector<Receiver<float>> pilots(LightCuts::pilots, pilot);
-      of.make<float>(slot, tree, pilots.data(), is_lit.data(), [](int, const auto&) { return 1.0f; });
+    of.take_tiles(tiles, &store, [&](std::int32_t) {
+      const std::vector<Receiver<float>> pilots(light_cut_pilots, pilot);
       ++made;
+      return make_light_cut<float>(tree, pilots.data(), is_lit.data(), [](int, const auto&) { return 1.0f; });
     });
   };
   take(cuts, {1, 2});

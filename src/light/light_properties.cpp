@@ -1,9 +1,9 @@
-#include "light/light.h"
+#include "light/light_properties.h"
 
 namespace etendue {
 
-std::int32_t Lights::note(const Colorf& strength, std::string name, std::int32_t kind, LightPlace place,
-                          std::int32_t row) {
+std::int32_t LightProperties::note(const Colorf& strength, std::string name, std::int32_t kind,
+                                   LightPlace place, std::int32_t row) {
   if (place == LightPlace::surface) ++surface_count_;
   if (place == LightPlace::infinity) infinite_.push_back(count());
   kind_.push_back(kind);
@@ -13,20 +13,20 @@ std::int32_t Lights::note(const Colorf& strength, std::string name, std::int32_t
   return count() - 1;
 }
 
-double Lights::power(std::int32_t light) const {
+double LightProperties::power(std::int32_t light) const {
   double of_unit = 0;
   with_table(kind_[light], [&](const auto& table) { of_unit = table.power(row_[light], scene_bounds_); });
   if (emissions_.is_twosided(light)) of_unit *= 2;
   return of_unit * luminance(emissions_.strength(light));
 }
 
-std::optional<LightBounds> Lights::bounds(std::int32_t light) const {
+std::optional<LightBounds> LightProperties::bounds(std::int32_t light) const {
   std::optional<LightBounds> bounds;
   with_table(kind_[light], [&](const auto& table) { bounds = table.bounds(row_[light]); });
   return seen_from_its_sides(light, bounds);
 }
 
-std::int32_t Lights::facet_count(std::int32_t light) const {
+std::int32_t LightProperties::facet_count(std::int32_t light) const {
   std::int32_t count = 1;
   with_table(kind_[light], [&](const auto& table) {
     if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
@@ -35,7 +35,7 @@ std::int32_t Lights::facet_count(std::int32_t light) const {
   return count;
 }
 
-double Lights::facet_power(std::int32_t light, std::int32_t facet) const {
+double LightProperties::facet_power(std::int32_t light, std::int32_t facet) const {
   double share = 1;
   with_table(kind_[light], [&](const auto& table) {
     if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
@@ -44,7 +44,7 @@ double Lights::facet_power(std::int32_t light, std::int32_t facet) const {
   return power(light) * share;
 }
 
-std::optional<LightBounds> Lights::facet_bounds(std::int32_t light, std::int32_t facet) const {
+std::optional<LightBounds> LightProperties::facet_bounds(std::int32_t light, std::int32_t facet) const {
   std::optional<LightBounds> bounds;
   with_table(kind_[light], [&](const auto& table) {
     if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
@@ -55,8 +55,8 @@ std::optional<LightBounds> Lights::facet_bounds(std::int32_t light, std::int32_t
   return seen_from_its_sides(light, bounds);
 }
 
-std::optional<LightBounds> Lights::seen_from_its_sides(std::int32_t light,
-                                                       std::optional<LightBounds> bounds) const {
+std::optional<LightBounds> LightProperties::seen_from_its_sides(std::int32_t light,
+                                                                std::optional<LightBounds> bounds) const {
   // From the back of a normal it shines as from its front: the cone of both is the whole sphere.
   if (bounds && emissions_.is_twosided(light)) bounds->cos_normals = -1;
   return bounds;

@@ -1,0 +1,70 @@
+// What is known of lights beside how they are sampled: names, strengths, powers, bounds, facets.
+#pragma once
+
+#include "light/emission.h"
+#include "light/light_tables.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace etendue {
+
+/// Of each light by its id.
+class LightProperties : public LightTables {
+ public:
+  /// Makes a light that is a surface shine from its back side as from its front.
+  void set_twosided(std::int32_t light) { emissions_.set_twosided(light); }
+
+  /// The sphere around all shapes and media, which lights at infinity lie outside of.
+  void set_scene_bounds(const Sphere& bounds) { scene_bounds_ = bounds; }
+
+  const std::string& name(std::int32_t light) const { return names_[std::size_t(light)]; }
+
+  double power(std::int32_t light) const;                       ///< W, luminance of the channels.
+  std::optional<LightBounds> bounds(std::int32_t light) const;  ///< None: it shines everywhere.
+
+  // The facets of a light are parts of its surface that can be chosen one by one: the triangles of a mesh;
+  // any other light is one facet.
+  std::int32_t facet_count(std::int32_t light) const;
+  double facet_power(std::int32_t light, std::int32_t facet) const;  ///< W, luminance.
+  /// None: it shines everywhere.
+  std::optional<LightBounds> facet_bounds(std::int32_t light, std::int32_t facet) const;
+
+  /// The facet that a ray has hit. \param primitive the triangle within a mesh; 0 of other shapes
+  template <class F>
+  Int<F> facet_at(const Int<F>& light, const Int<F>& primitive, const Mask<F>& m) const {
+    Int<F> facet(0);
+    for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
+      if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
+        facet = select(lanes, table.template facet_at<F>(row, select(lanes, primitive, Int<F>(0))), facet);
+    });
+    return facet;
+  }
+
+  /// Lanes outside of `m` may hold any light.
+  template <class F>
+  Mask<F> is_twosided(const Int<F>& light, const Mask<F>& m) const {
+    return emissions_.is_twosided<F>(light, m);
+  }
+
+  /// W/(m^2 sr), of a light's surface, on the sides that shine.
+  template <class F>
+  Color<F> radiance(const Int<F>& light, const Mask<F>& m) const {
+    return emissions_.strength<F>(light, m);
+  }
+
+ protected:
+  std::int32_t note(const Colorf& strength, std::string name, std::int32_t kind, LightPlace place,
+                    std::int32_t row);
+
+  std::optional<LightBounds> seen_from_its_sides(std::int32_t light, std::optional<LightBounds> bounds) const;
+
+  Emissions emissions_;
+  std::vector<std::string> names_;
+  Sphere scene_bounds_{{0, 0, 0}, 0};
+};
+
+}  // namespace etendue
