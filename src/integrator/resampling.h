@@ -21,7 +21,7 @@ class ResampledLight {
     const F adds = select(candidate.needs_shadow_ray, luminance(candidate.unshadowed), F(0));
     total_ = total_ + adds;
     // "not less": what is not a number is kept, so that it reaches the sum, where it is reported.
-    const F share = select(total_ > F(0), adds / total_, F(0));
+    const F share = select(total_ == F(0), F(0), adds / total_);
     const Mask<F> is_taken = mask_and(candidate.needs_shadow_ray, mask_not(u_ >= share));
     u_ = select(is_taken, u_ / share, (u_ - share) / (F(1) - share));
     u_ = min(max(u_, F(0)), F(0x1.fffffep-1f));

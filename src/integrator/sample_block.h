@@ -23,8 +23,10 @@ struct PathColumns {
   RayColumns ray;  ///< The ray that arrives, and what it hits.
   HitColumns hit;
   ColorColumn throughput;  ///< Product of f cos / pdf, roulette included.
-  Column<float> pdf;       ///< Of the ray's direction, 1/sr; infinity: the camera's, or a Dirac delta's.
-  Column<float> eta;       ///< Refractive index here over that at the camera.
+  /// Of the ray's direction, 1/sr; infinity: the camera's, or a Dirac delta's; 0: light samples alone find
+  /// the light that it meets.
+  Column<float> pdf;
+  Column<float> eta;  ///< Refractive index here over that at the camera.
   /// The vertex where the ray was sampled; kept only where weights need it.
   ReceiverColumns receiver;
 };

@@ -26,8 +26,8 @@ class LightProperties : public LightTables {
   double power(std::int32_t light) const;                       ///< W, luminance of the channels.
   std::optional<LightBounds> bounds(std::int32_t light) const;  ///< None: it shines everywhere.
 
-  // The facets of a light are parts of its surface that can be chosen one by one: the triangles of a mesh;
-  // any other light is one facet.
+  // The facets of a light are parts of its surface that can be chosen one by one: of a mesh the flat convex
+  // pieces that its triangles make (geometry/convex_pieces.h); any other light is one facet.
   std::int32_t facet_count(std::int32_t light) const;
   double facet_power(std::int32_t light, std::int32_t facet) const;  ///< W, luminance.
   /// None: it shines everywhere.

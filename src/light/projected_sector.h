@@ -104,13 +104,17 @@ class ProjectedSector {
                                                  t * (rest * (inv_at_half + inv_at_end) - F(1))));
     F share = max(min(select(u < half, min(before, F(0.5f)), max(behind, F(0.5f))), F(1)), F(0));
     constexpr int most_steps = 6;
+    Mask<F> is_done = F(1) < F(0);  // Each lane by itself: what it gives must not depend on its neighbours.
     for (int step = 0; step < most_steps; ++step) {
       const Place there = at(share);
       const F excess = area_up_to(share, there) * inv_area - u;
       const F next = share - excess / max(density * there.held, F(tiny));
-      share = select(next < F(0), share * F(0.5f), select(next > F(1), (share + F(1)) * F(0.5f), next));
+      const F inside =
+          select(next < F(0), share * F(0.5f), select(next > F(1), (share + F(1)) * F(0.5f), next));
+      share = select(is_done, share, inside);
       constexpr float near = 1e-3f;  // Which the step has squared.
-      if (all(abs(excess) < F(near))) break;
+      is_done = mask_or(is_done, abs(excess) < F(near));
+      if (all(is_done)) break;
     }
     return share;
   }

@@ -22,8 +22,7 @@ constexpr Row table[]{
     {"all", "Every light: a light sample is one sample of each, added up.", make<AllLights>},
     {"tree",
      "One facet of a light, by what it may bring to the place: power, distance, and how both face each "
-     "other, by a "
-     "light tree.",
+     "other, by a light tree.",
      make<TreeLights>},
 };
 

@@ -96,7 +96,7 @@ LightCut make_light_cut(const LightTree& tree, const Receiver<F>* receivers, con
       if (whole[k] > 0) seen += share_of(heap[e], k) / whole[k];
     const double weight = defence * double(cluster.power) / double(clusters[0].power) +
                           (lit > 0 ? (1 - defence) * seen / lit : 0);
-    weights[e] = cluster.power > 0 ? std::max(weight, least_share) : 0;
+    weights[e] = cluster.power > 0 ? std::max(least_share, weight) : 0;
   }
   std::vector<std::int32_t> shares;
   append_cumulative_shares(weights, shares);

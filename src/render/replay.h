@@ -39,7 +39,7 @@ struct SampleTrace {
     bool is_followed;  ///< Not where nothing is scattered, or where roulette ended the path.
     Vec3f direction;
     Colorf throughput;      ///< Of the path, with it.
-    float pdf_solid_angle;  ///< 1/sr; infinite: a Dirac delta.
+    float pdf_solid_angle;  ///< 1/sr; infinite: a Dirac delta; 0: direct light is left to light samples.
   };
   /// A place that the path came to.
   struct Vertex {

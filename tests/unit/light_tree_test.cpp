@@ -252,7 +252,7 @@ TEST(LightTree, CanChooseWhateverReachesAReceiver) {
     }
   }
   EXPECT_GT(reached, 20000);
-  EXPECT_LT(least_found, 1e-5) << "the search is too weak to find where it is close";
+  EXPECT_LT(least_found, 1e-4) << "the search is too weak to find where it is close";
 }
 
 TEST(LightTree, ProbabilitiesAddUpToOneOrToNothing) {
