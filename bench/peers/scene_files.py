@@ -40,6 +40,19 @@ def numbers(values):
     return " ".join(f"{value:.9g}" for value in np.ravel(values))
 
 
+def shape_opening(scene, thing, naming, to_world, of_mesh=""):
+    """The tag that opens a shape, and what says its form: both formats have the same, by other names."""
+    shape = thing.shape
+    opening = f'{naming}="{thing.name}">'
+    if isinstance(shape, Mesh):
+        return (f'\t<shape type="ply" {opening}<string name="filename" value="{mesh_name(scene, thing)}"/>{of_mesh}')
+    if isinstance(shape, Sphere):
+        return (f'\t<shape type="sphere" {opening}<point name="center" value="{numbers(shape.center)}"/>'
+                f'<float name="radius" value="{shape.radius:g}"/>')
+    return (f'\t<shape type="rectangle" {opening}<transform name="{to_world}"><matrix '
+            f'value="{numbers(shape.world_from_square())}"/></transform>')
+
+
 def etendue_xml(scene, size_px):
     camera = scene.camera
     lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<!-- {scene.about} -->", '<scene dialect="nori">',
@@ -49,16 +62,7 @@ def etendue_xml(scene, size_px):
              f'\t\t<float name="fov" value="{camera.fov_deg:g}"/>', f'\t\t<integer name="width" value="{size_px}"/>',
              f'\t\t<integer name="height" value="{size_px}"/>', "\t</camera>"]
     for thing in scene.objects:
-        shape = thing.shape
-        if isinstance(shape, Mesh):
-            lines.append(f'\t<shape type="ply" name="{thing.name}"><string name="filename" '
-                         f'value="{mesh_name(scene, thing)}"/>')
-        elif isinstance(shape, Sphere):
-            lines.append(f'\t<shape type="sphere" name="{thing.name}"><point name="center" '
-                         f'value="{numbers(shape.center)}"/><float name="radius" value="{shape.radius:g}"/>')
-        else:
-            lines.append(f'\t<shape type="rectangle" name="{thing.name}"><transform name="toWorld"><matrix '
-                         f'value="{numbers(shape.world_from_square())}"/></transform>')
+        lines.append(shape_opening(scene, thing, naming="name", to_world="toWorld"))
         material = thing.material
         if isinstance(material, Diffuse):
             lines.append(f'\t\t<bsdf type="diffuse"><color name="albedo" value="{numbers(material.albedo)}"/></bsdf>')
@@ -88,16 +92,8 @@ def mitsuba_xml(scene, size_px):
              f'<integer name="width" value="{size_px}"/><integer name="height" value="{size_px}"/>'
              '<rfilter type="box"/></film>', '\t\t<sampler type="$sampler"/>', "\t</sensor>"]
     for thing in scene.objects:
-        shape = thing.shape
-        if isinstance(shape, Mesh):
-            lines.append(f'\t<shape type="ply" id="{thing.name}"><string name="filename" '
-                         f'value="{mesh_name(scene, thing)}"/><boolean name="face_normals" value="true"/>')
-        elif isinstance(shape, Sphere):
-            lines.append(f'\t<shape type="sphere" id="{thing.name}"><point name="center" '
-                         f'value="{numbers(shape.center)}"/><float name="radius" value="{shape.radius:g}"/>')
-        else:
-            lines.append(f'\t<shape type="rectangle" id="{thing.name}"><transform name="to_world"><matrix '
-                         f'value="{numbers(shape.world_from_square())}"/></transform>')
+        lines.append(shape_opening(scene, thing, naming="id", to_world="to_world",
+                                   of_mesh='<boolean name="face_normals" value="true"/>'))
         material = thing.material
         if isinstance(material, Diffuse):
             lines.append(f'\t\t<bsdf type="diffuse"><rgb name="reflectance" value="{numbers(material.albedo)}"/></bsdf>')

@@ -17,8 +17,6 @@ constexpr double place_rounding = 0x1p-22;
 constexpr double area_tolerance = 0x1p-20;
 constexpr double least_cos_of_normals = 1 - 0x1p-21;
 
-Vec3d wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
 /// Of each vertex in use the least number of those at the same place.
 class EqualPlaces {
  public:
@@ -142,7 +140,7 @@ class Joining {
     return {polygon.sides.data(), std::size_t(polygon.count)};
   }
   const Vec3f& at(std::int32_t vertex) const { return positions_[std::size_t(vertex)]; }
-  Vec3d place_of(std::int32_t vertex) const { return wide(at(vertex)); }
+  Vec3d place_of(std::int32_t vertex) const { return widen(at(vertex)); }
   Vec3d begin_of(std::int32_t side) const { return place_of(begin_[std::size_t(side)]); }
 
   std::int32_t root_of(std::int32_t triangle) {

@@ -40,6 +40,15 @@ Vec2<UInt<F>> sample_bits(const Scene& scene, const PathColumns& path, int i, st
   return sample_bits_at<F>(scene, path, i, pair, index, which.sequence);
 }
 
+template <class F>
+void store_camera_ray(RayColumns& rays, int i, const CameraRay<F>& ray) {
+  store_lanes(rays.origin, i, ray.origin);
+  store_lanes(rays.direction, i, ray.direction);
+  store_lanes(&rays.t_near[i], ray.t_near);
+  store_lanes(&rays.t_far[i], ray.t_far);
+  store_lanes(&rays.is_active[i], Int<F>(-1));
+}
+
 /// Starts the block's samples, each a path.
 template <class F>
 [[gnu::noinline]] void camera_rays(const Scene& scene, SampleBlock& block) {
@@ -56,12 +65,7 @@ template <class F>
           to_float(load_lanes<Int<F>>(&block.pixel_y[i])) + F(0.5f) + scene.filter.sample_offset_px(u_film.y);
       if (scene.filter.is_signed())
         store_lanes(&block.filter_weight[i], scene.filter.sample_weight(u_film.x, u_film.y));
-      const CameraRay<F> ray = ray_at(i, x_px, y_px);
-      store_lanes(path.ray.origin, i, ray.origin);
-      store_lanes(path.ray.direction, i, ray.direction);
-      store_lanes(&path.ray.t_near[i], ray.t_near);
-      store_lanes(&path.ray.t_far[i], ray.t_far);
-      store_lanes(&path.ray.is_active[i], Int<F>(-1));
+      store_camera_ray<F>(path.ray, i, ray_at(i, x_px, y_px));
       store_lanes(path.throughput, i, Color<F>{F(1), F(1), F(1)});
       store_lanes(&path.pdf[i], F(std::numeric_limits<float>::infinity()));
       store_lanes(&path.eta[i], F(1));

@@ -3,6 +3,7 @@
 
 #include "base/lane_vec.h"
 #include "geometry/ray.h"
+#include "geometry/raycast.h"
 #include "light/receiver.h"
 
 #include <array>
@@ -56,6 +57,19 @@ struct HitColumns {
   Vec3Column ng;  ///< Not normalised.
   Column<std::int32_t> geometry, primitive;
 };
+
+/// As the ray caster takes them. \param count of rays, whole packets
+inline RaySpan span_of(const RayColumns& rays, int count) {
+  return {rays.origin.x.data(),    rays.origin.y.data(),
+          rays.origin.z.data(),    rays.direction.x.data(),
+          rays.direction.y.data(), rays.direction.z.data(),
+          rays.t_near.data(),      rays.t_far.data(),
+          rays.is_active.data(),   count};
+}
+inline HitSpan span_of(HitColumns& hits) {
+  return {hits.t.data(), hits.ng.x.data(), hits.ng.y.data(),     hits.ng.z.data(),
+          hits.u.data(), hits.v.data(),    hits.geometry.data(), hits.primitive.data()};
+}
 
 /// The ray i, or the packet from i on; likewise below.
 template <class F>

@@ -26,8 +26,8 @@ DirectLightSample<F> select(const Mask<F>& m, const DirectLightSample<F>& a, con
 /// The light that reaches the vertices straight from a light, by one sample of the lights: what course
 /// handouts call `sampleLights`, with the BSDF, the cosine and the weight that they leave to `Li`.
 /// \param vertex_number which of the path's \param share of this sample among all that are added up
-/// \param receiver as lights see the vertex \param u_light chooses
-/// the light and places the point \param pass of the light sampler's passes
+/// \param receiver as lights see the vertex \param u_light chooses the light and places the point
+/// \param pass of the light sampler's passes \param lanes that take a sample
 template <class F>
 DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler& light_sampler,
                                          const PathRules& rules, int vertex_number, const F& share,

@@ -13,15 +13,8 @@ namespace etendue {
 /// Casts the rays that arrive at the next vertex.
 template <class F>
 void closest_hits(const Scene& scene, SampleBlock& block, Coherence coherence) {
-  const RayColumns& rays = block.path.ray;
-  HitColumns& hits = block.path.hit;
-  scene.rays.closest_hits(
-      {rays.origin.x.data(), rays.origin.y.data(), rays.origin.z.data(), rays.direction.x.data(),
-       rays.direction.y.data(), rays.direction.z.data(), rays.t_near.data(), rays.t_far.data(),
-       rays.is_active.data(), block.path.padded_count},
-      {hits.t.data(), hits.ng.x.data(), hits.ng.y.data(), hits.ng.z.data(), hits.u.data(), hits.v.data(),
-       hits.geometry.data(), hits.primitive.data()},
-      lane_count_v<F>, coherence);
+  scene.rays.closest_hits(span_of(block.path.ray, block.path.padded_count), span_of(block.path.hit),
+                          lane_count_v<F>, coherence);
   block.counts.paths += block.path.count;
   block.counts.lanes += (block.path.count + lane_count_v<F> - 1) / lane_count_v<F> * lane_count_v<F>;
   block.clock.finish(Stage::closest_hits);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/frame.h"
+#include "integrator/camera_stage.h"
 #include "integrator/columns.h"
 #include "integrator/sample_block.h"
 #include "integrator/vertex.h"
@@ -69,27 +70,18 @@ LightCut make_cut(const Scene& scene, const LightTree& tree, std::int32_t tile, 
     const F x_lanes = load_lanes<F>(&x[std::size_t(i)]), y_lanes = load_lanes<F>(&y[std::size_t(i)]);
     const CameraRay<F> ray = scene.camera.has_lens ? scene.camera.ray(x_lanes, y_lanes, Vec2<F>{F(0), F(0)})
                                                    : scene.camera.ray(x_lanes, y_lanes);
-    store_lanes(pilots.ray.origin, i, ray.origin);
-    store_lanes(pilots.ray.direction, i, ray.direction);
-    store_lanes(&pilots.ray.t_near[i], ray.t_near);
-    store_lanes(&pilots.ray.t_far[i], ray.t_far);
-    store_lanes(&pilots.ray.is_active[i], Int<F>(-1));
+    store_camera_ray<F>(pilots.ray, i, ray);
   }
   const RayColumns& rays = pilots.ray;
-  HitColumns& hits = pilots.hit;
-  scene.rays.closest_hits({rays.origin.x.data(), rays.origin.y.data(), rays.origin.z.data(),
-                           rays.direction.x.data(), rays.direction.y.data(), rays.direction.z.data(),
-                           rays.t_near.data(), rays.t_far.data(), rays.is_active.data(), light_cut_pilots},
-                          {hits.t.data(), hits.ng.x.data(), hits.ng.y.data(), hits.ng.z.data(), hits.u.data(),
-                           hits.v.data(), hits.geometry.data(), hits.primitive.data()},
-                          lane_count_v<F>, Coherence::coherent);
+  scene.rays.closest_hits(span_of(rays, light_cut_pilots), span_of(pilots.hit), lane_count_v<F>,
+                          Coherence::coherent);
   std::array<Receiver<F>, packets> receivers;
   std::array<Mask<F>, packets> is_lit;
   std::vector<PilotLobes<F>> lobes;
   bool is_all_diffuse = true;
   for (int p = 0; p < packets; ++p) {
     const int i = p * lane_count_v<F>;
-    const Vertex<F> vertex(scene, load_ray<F>(rays, i), load_hit<F>(hits, i));
+    const Vertex<F> vertex(scene, load_ray<F>(rays, i), load_hit<F>(pilots.hit, i));
     receivers[std::size_t(p)] = vertex.receiver(scene);
     lobes.emplace_back(vertex);
     is_lit[std::size_t(p)] = mask_and(

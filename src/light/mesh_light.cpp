@@ -120,10 +120,9 @@ std::int32_t MeshLights::add(const Geometry& geometry, std::int32_t geometry_id)
     const auto corner = [&](int k) { return geometry.positions[std::size_t(geometry.indices[3 * t + k])]; };
     const Vec3f origin = corner(0), edge_1 = corner(1) - origin, edge_2 = corner(2) - origin;
     for (const Vec3f& v : {origin, edge_1, edge_2}) triangles_.insert(triangles_.end(), {v.x, v.y, v.z});
-    const auto wide = [](const Vec3f& v) { return Vec3<double>{v.x, v.y, v.z}; };
     thick_boxes += has_thick_box(edge_1, edge_2);
     centers.push_back(origin + (edge_1 + edge_2) * (1.0f / 3));
-    across.push_back(cross(wide(edge_1), wide(edge_2)));
+    across.push_back(cross(widen(edge_1), widen(edge_2)));
     for (const int k : {0, 1, 2}) box.include(corner(k));
     areas.push_back(0.5 * length(across.back()));
     total_area += areas.back();

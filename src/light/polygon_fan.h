@@ -39,13 +39,12 @@ class PolygonTable {
   /// \param corners 3 to most_corners, convex, in one plane, with an area; seen from the front they turn to
   /// the left \return the row
   std::int32_t add(std::span<const Vec3f> corners) {
-    const auto wide = [](const Vec3f& v) { return Vec3<double>{v.x, v.y, v.z}; };
-    const Vec3<double> apex = wide(corners.front());
+    const Vec3<double> apex = widen(corners.front());
     first_.push_back(std::int32_t(corners_.size()));
     corners_.insert(corners_.end(), {corners[0].x, corners[0].y, corners[0].z, 0});
     Vec3<double> sum{0, 0, 0}, before{0, 0, 0};
     for (const Vec3f& corner : corners.subspan(1)) {
-      const Vec3<double> side = wide(corner) - apex, across = cross(before, side);
+      const Vec3<double> side = widen(corner) - apex, across = cross(before, side);
       corners_.insert(corners_.end(), {float(side.x), float(side.y), float(side.z), float(length(across))});
       sum = sum + across;
       before = side;

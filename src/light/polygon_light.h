@@ -61,22 +61,14 @@ class PolygonLight {
           .piece = piece};
       result = select(m, sample, result);
     };
-    Mask<F> by_solid_angle = mask_and(is_seen_, mask_not(by_area_));
-    if (any(by_cosine_)) {
-      const Frame<F> frame = receiver_frame();
-      const ProjectedPolygon<F> polygon(fan_, frame);
-      const Mask<F> m = mask_and(by_cosine_, polygon.is_accurate());
-      by_solid_angle = mask_and(by_solid_angle, mask_not(m));
-      if (any(m)) {
-        const Vec3<F> wi = frame.world_from_local(polygon.sample(u));
-        take(m, wi * (-fan_.height / dot(wi, fan_.ng)), cosine_density(polygon, frame, wi));
-      }
-    }
-    if (any(by_solid_angle)) {
-      const SphericalPolygon<F> polygon(fan_);
-      take(mask_and(by_solid_angle, polygon.solid_angle() > F(0)), polygon.sample(u),
-           F(1) / polygon.solid_angle());
-    }
+    by_directions(
+        [&](const ProjectedPolygon<F>& polygon, const Frame<F>& frame, const Mask<F>& m) {
+          const Vec3<F> wi = frame.world_from_local(polygon.sample(u));
+          take(m, wi * (-fan_.height / dot(wi, fan_.ng)), cosine_density(polygon, frame, wi));
+        },
+        [&](const SphericalPolygon<F>& polygon, const Mask<F>& m) {
+          take(m, polygon.sample(u), F(1) / polygon.solid_angle());
+        });
     return result;
   }
 
@@ -84,22 +76,33 @@ class PolygonLight {
   F pdf_solid_angle(const LightHit<F>& hit) const {
     F pdf(0);
     if (any(by_area_)) pdf = select(by_area_, pdf_solid_angle_at(hit, receiver_, F(1) / fan_.area), pdf);
-    Mask<F> by_solid_angle = mask_and(is_seen_, mask_not(by_area_));
-    if (any(by_cosine_)) {
-      const Frame<F> frame = receiver_frame();
-      const ProjectedPolygon<F> polygon(fan_, frame);
-      const Mask<F> m = mask_and(by_cosine_, polygon.is_accurate());
-      by_solid_angle = mask_and(by_solid_angle, mask_not(m));
-      pdf = select(m, cosine_density(polygon, frame, hit.wi), pdf);
-    }
-    if (any(by_solid_angle)) {
-      const SphericalPolygon<F> polygon(fan_);
-      pdf = select(mask_and(by_solid_angle, polygon.solid_angle() > F(0)), F(1) / polygon.solid_angle(), pdf);
-    }
+    by_directions([&](const ProjectedPolygon<F>& polygon, const Frame<F>& frame,
+                      const Mask<F>& m) { pdf = select(m, cosine_density(polygon, frame, hit.wi), pdf); },
+                  [&](const SphericalPolygon<F>& polygon, const Mask<F>& m) {
+                    pdf = select(m, F(1) / polygon.solid_angle(), pdf);
+                  });
     return pdf;
   }
 
  private:
+  /// by_cosine(polygon, frame, lanes) and by_solid_angle(polygon, lanes), each where some lanes are its: the
+  /// same ones for samples and for hits.
+  template <class ByCosine, class BySolidAngle>
+  void by_directions(const ByCosine& by_cosine, const BySolidAngle& by_solid_angle) const {
+    Mask<F> left = mask_and(is_seen_, mask_not(by_area_));
+    if (any(by_cosine_)) {
+      const Frame<F> frame = receiver_frame();
+      const ProjectedPolygon<F> polygon(fan_, frame);
+      const Mask<F> m = mask_and(by_cosine_, polygon.is_accurate());
+      left = mask_and(left, mask_not(m));
+      if (any(m)) by_cosine(polygon, frame, m);
+    }
+    if (any(left)) {
+      const SphericalPolygon<F> polygon(fan_);
+      by_solid_angle(polygon, mask_and(left, polygon.solid_angle() > F(0)));
+    }
+  }
+
   /// Of the side on which light is scattered. Behind a two-sided polygon its corners turn the other way, and
   /// so does the frame.
   Frame<F> receiver_frame() const {

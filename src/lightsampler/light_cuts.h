@@ -16,6 +16,7 @@ class LightCuts {
  public:
   static constexpr int most_clusters = LightCut::most_clusters;
   static int tiles_across(int pixels) { return (pixels + LightCut::tile_px - 1) / LightCut::tile_px; }
+
   /// Takes the cuts of the next block's tiles: those that the last block had, those that are kept, and what
   /// make(tile) makes.
   template <class Make>

@@ -23,8 +23,7 @@ namespace etendue {
 ///   passes(): how many choices make one light sample; each of them is to be sampled, and they are added up.
 ///   choose(receiver, u, pass): a light for the receiver, in pass 0 .. passes() - 1.
 ///   chooses_facets: whether choices are of facets of lights; else of whole lights.
-///   pmf(receiver, light, facet): the probability with which the passes choose this light, or this facet of
-///   it;
+///   pmf(receiver, light, facet): the probability with which the passes choose this light, or this facet;
 ///     of a light that is chosen in every case, 1. Lanes that nobody asks for may hold any light that there
 ///     is.
 template <class Sampler>

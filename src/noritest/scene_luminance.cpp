@@ -25,8 +25,9 @@ void cover_film_by_one_pixel(Scene& scene, SamplerKind sampler) {
   scene.sampler = sampler;
 }
 
-SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, int samples,
-                           const Kernel& kernel, SampleBlock& block) {
+SceneLuminance render_task(const Scene& scene, const LightSampler& light_sampler,
+                           const RenderSettings& settings, int samples, const Kernel& kernel,
+                           SampleBlock& block) {
   SceneLuminance luminances;
   const std::function<void(const SampleBlock&)> add_samples = [&](const SampleBlock& rendered) {
     for (std::size_t i = 0; i < std::size_t(rendered.count); ++i)
@@ -35,7 +36,6 @@ SceneLuminance render_task(const Scene& scene, const RenderSettings& settings, i
   };
   std::vector<Color<double>> means;
   InvalidSamples invalid;
-  const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
   TileJob job{.scene = &scene,
               .light_sampler = &light_sampler,
               .settings = &settings,
@@ -55,17 +55,19 @@ SceneLuminance sample_luminance(Scene& scene, const IntegratorSettings& integrat
                                 const TestSettings& test, std::uint64_t seed) {
   cover_film_by_one_pixel(scene, test.sampler);
   const Kernel& kernel = kernel_for(test.isa);
+  const IntegratorSettings settled_integrator = settled(integrator, scene.lights);
+  const LightSampler light_sampler = light_sampler_for(settled_integrator, scene.lights);
   std::vector<SceneLuminance> parts(std::size_t((count + samples_a_task - 1) / samples_a_task));
   tbb::enumerable_thread_specific<std::unique_ptr<SampleBlock>> blocks(
       [] { return std::make_unique<SampleBlock>(); });
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     throw_if_stopped(test);
     RenderSettings settings;
-    settings.integrator = settled(integrator, scene.lights);
+    settings.integrator = settled_integrator;
     settings.seed = hash64(hash64(seed) + part);
     settings.isa = test.isa;
     const int samples = int(std::min(samples_a_task, count - std::int64_t(part) * samples_a_task));
-    parts[part] = render_task(scene, settings, samples, kernel, *blocks.local());
+    parts[part] = render_task(scene, light_sampler, settings, samples, kernel, *blocks.local());
   });
   SceneLuminance all;
   for (const SceneLuminance& part : parts) {
