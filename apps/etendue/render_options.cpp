@@ -74,7 +74,7 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
   command
       .add_option("--shadow-rays", options.shadow_rays,
                   "Light samples at the first vertex, each with a shadow ray; 1 to 65536 [path, "
-                  "direct_light: 4; others: 1]")
+                  "direct_light: 4; others: 1, or as the keys of the file say]")
       ->check(number);
   command.add_option("--weights", options.heuristic,
                      "How light samples and BSDF samples share light that both find: balance or power "

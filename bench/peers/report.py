@@ -15,6 +15,7 @@ from scenes import SCENES
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import ticker  # noqa: E402
 
 BEGIN, END = "<!-- bench/peers/run.sh writes from here -->", "<!-- to here -->"
 CROP_PX, GAP_PX = 192, 4
@@ -117,15 +118,19 @@ def figure(value):
 
 def draw_curves(results, path):
     plt.rcParams.update({"svg.hashsalt": "peers", "svg.fonttype": "none", "font.size": 8, "axes.grid": True, "grid.alpha": 0.3})
-    columns = 4
+    columns = min(len(results), 4)
     shape = (-(-len(results) // columns), columns)
-    drawing, axes = plt.subplots(*shape, figsize=(11, 2.4 * shape[0]), squeeze=False, layout="constrained")
+    drawing, axes = plt.subplots(*shape, figsize=(2.75 * columns, 2.4 * shape[0]), squeeze=False, layout="constrained")
     for axis in axes.flat[len(results):]:
         axis.axis("off")
     for result, axis in zip(results, axes.flat):
         for renderer, points in result["curves"].items():
             axis.loglog([p["seconds"] for p in points], [100 * np.sqrt(p["relative_variance"]) for p in points], ".-",
                         color=COLOURS[renderer], label=renderer)
+        for side in (axis.xaxis, axis.yaxis):
+            side.set_major_locator(ticker.LogLocator(subs=(1, 3)))
+            side.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+            side.set_minor_formatter(ticker.NullFormatter())
         axis.set_title(result["scene"])
         axis.set_xlabel("seconds")
         axis.set_ylabel("error, % of the mean")
