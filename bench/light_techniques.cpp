@@ -2,6 +2,7 @@
 // the measures are off over many random polygons and receivers of all troublesome sorts. Exit 1 where a bound
 // of docs/light_sampling.md does not hold.
 
+#include "light/polygon_table.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
 #include "polygon_cases.h"

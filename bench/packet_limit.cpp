@@ -34,10 +34,11 @@ double thread_seconds() {
 struct Recording {
   struct Vec3s {
     std::vector<float> x, y, z;
-    void append(const Vec3Column& column, int count) {
-      x.insert(x.end(), column.x.begin(), column.x.begin() + count);
-      y.insert(y.end(), column.y.begin(), column.y.begin() + count);
-      z.insert(z.end(), column.z.begin(), column.z.begin() + count);
+    template <int rows>
+    void append(const Vec3ColumnOf<rows>& column, int first, int count) {
+      x.insert(x.end(), column.x.begin() + first, column.x.begin() + first + count);
+      y.insert(y.end(), column.y.begin() + first, column.y.begin() + first + count);
+      z.insert(z.end(), column.z.begin() + first, column.z.begin() + first + count);
     }
     void clear() { x.clear(), y.clear(), z.clear(); }
   };
@@ -47,21 +48,21 @@ struct Recording {
   std::int64_t rays = 0;
 
   /// Those of one light sample.
-  void append_shadow_rays(const SampleBlock& block) {
-    const PathColumns& path = block.path;
-    const int count = path.padded_count;
-    for (int i = 0; i < count; ++i)
-      shadow_order.push_back(
-          block.shadow_is_needed[i] && i < path.count ? std::int32_t(shadow_origin.x.size()) + i : -1);
-    shadow_origin.append(block.shadow_origin, count);
-    shadow_direction.append(block.shadow_direction, count);
+  void append_shadow_rays(const SampleBlock& block, int k) {
+    const ShadowRays& shadow = block.shadow;
+    for (int i = 0; i < shadow.stride; ++i) {
+      const bool is_cast = shadow.is_needed[std::size_t(shadow.row(k, i))] && i < block.path.count;
+      shadow_order.push_back(is_cast ? std::int32_t(shadow_origin.x.size()) + i : -1);
+    }
+    shadow_origin.append(shadow.origin, shadow.row(k, 0), shadow.stride);
+    shadow_direction.append(shadow.along, shadow.row(k, 0), shadow.stride);
   }
   void append_rays(const SampleBlock& block) {
     const PathColumns& path = block.path;
     const int count = path.padded_count;
     rays += path.count;
-    origin.append(path.ray.origin, count);
-    direction.append(path.ray.direction, count);
+    origin.append(path.ray.origin, 0, count);
+    direction.append(path.ray.direction, 0, count);
     t_near.insert(t_near.end(), path.ray.t_near.begin(), path.ray.t_near.begin() + count);
     t_far.insert(t_far.end(), path.ray.t_far.begin(), path.ray.t_far.begin() + count);
     is_active.insert(is_active.end(), path.ray.is_active.begin(), path.ray.is_active.begin() + count);
@@ -132,8 +133,8 @@ Measurement measure(const Scene& scene, const IntegratorSettings& integrator, Is
   unaimed_settings.is_reordering = false;
   Recording camera, bounces;
   const BlockWatcher record{
-      .on_light_sample = [&](const SampleBlock& b, int vertex, int,
-                             std::int32_t) { (vertex == 0 ? camera : bounces).append_shadow_rays(b); },
+      .on_light_sample = [&](const SampleBlock& b, const LightSampleNumber& which,
+                             int k) { (which.vertex == 0 ? camera : bounces).append_shadow_rays(b, k); },
       .on_vertex =
           [&](const SampleBlock& b, int vertex, int branch) {
             if (vertex == 0 && branch > 0) return;  // The same camera rays again.

@@ -1,6 +1,7 @@
 // A discrete distribution sampled in constant time: Walker's alias method as built by Vose (1991).
 #pragma once
 
+#include "base/gather.h"
 #include "base/simd_math.h"
 
 #include <cstddef>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/color.h"
+#include "base/gather.h"
 #include "base/mask.h"
 #include "base/vec.h"
 

@@ -1,7 +1,7 @@
 // A growing table read by lane-varying index, fast while it is short.
 #pragma once
 
-#include "base/simd.h"
+#include "base/gather.h"
 
 #include <vector>
 

@@ -113,27 +113,4 @@ std::int32_t first_lane(const xsimd::batch<std::int32_t, A>& v) {
   return v.get(0);
 }
 
-/// base[index] for each lane.
-inline float gather(const float* base, std::int32_t index) { return base[index]; }
-inline std::int32_t gather(const std::int32_t* base, std::int32_t index) { return base[index]; }
-inline std::uint32_t gather(const std::uint32_t* base, std::int32_t index) { return base[index]; }
-/// By the instruction where there is one: xsimd 8's own gather goes through memory, lane by lane, even on
-/// AVX-512.
-template <class T, class A>
-xsimd::batch<T, A> gather(const T* base, const xsimd::batch<std::int32_t, A>& index) {
-#if defined(__AVX512F__)
-  if constexpr (std::is_same_v<T, float>)
-    return xsimd::batch<T, A>(_mm512_i32gather_ps(index.data, base, 4));
-  else
-    return xsimd::batch<T, A>(_mm512_i32gather_epi32(index.data, base, 4));
-#elif defined(__AVX2__)
-  if constexpr (std::is_same_v<T, float>)
-    return xsimd::batch<T, A>(_mm256_i32gather_ps(base, index.data, 4));
-  else
-    return xsimd::batch<T, A>(_mm256_i32gather_epi32(reinterpret_cast<const int*>(base), index.data, 4));
-#else
-  return xsimd::batch<T, A>::gather(base, index);
-#endif
-}
-
 }  // namespace etendue

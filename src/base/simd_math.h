@@ -15,7 +15,9 @@ using xsimd::floor;
 using xsimd::sqrt;
 
 inline float min(float a, float b) { return a < b ? a : b; }
+inline std::int32_t min(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
 inline float max(float a, float b) { return a > b ? a : b; }
+inline std::int32_t max(std::int32_t a, std::int32_t b) { return a > b ? a : b; }
 template <class A>
 xsimd::batch<float, A> min(const xsimd::batch<float, A>& a, const xsimd::batch<float, A>& b) {
   return xsimd::min(a, b);

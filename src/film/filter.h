@@ -1,6 +1,7 @@
 // Pixel filters, importance-sampled: a sample belongs to one pixel and lies where the filter puts it.
 #pragma once
 
+#include "base/gather.h"
 #include "base/simd_math.h"
 #include "base/vec.h"
 #include "scenefile/parameters.h"

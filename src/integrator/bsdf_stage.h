@@ -94,7 +94,7 @@ template <class F>
 template <class F>
 [[gnu::noinline]] void follow_paths(SampleBlock& block, bool keeps_receivers) {
   PathColumns& path = block.path;
-  Column<std::int32_t>& kept = block.order;
+  Column<std::int32_t>& kept = block.kept;
   int count = 0;
   for (int i = 0; i < path.count; ++i) {
     kept[std::size_t(count)] = i;

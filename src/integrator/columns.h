@@ -7,38 +7,43 @@
 #include "light/receiver.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace etendue {
 
 inline constexpr int block_capacity = 1024;
 
-template <class T>
-struct alignas(64) Column : std::array<T, block_capacity> {};
+template <class T, int rows = block_capacity>
+struct alignas(64) Column : std::array<T, std::size_t(rows)> {};
 
-struct Vec3Column {
-  Column<float> x, y, z;
+template <int rows>
+struct Vec3ColumnOf {
+  Column<float, rows> x, y, z;
 };
-struct ColorColumn {
-  Column<float> r, g, b;
+template <int rows>
+struct ColorColumnOf {
+  Column<float, rows> r, g, b;
 };
+using Vec3Column = Vec3ColumnOf<block_capacity>;
+using ColorColumn = ColorColumnOf<block_capacity>;
 
-template <class F>
-Vec3<F> load_lanes(const Vec3Column& column, int i) {
+template <class F, int rows>
+Vec3<F> load_lanes(const Vec3ColumnOf<rows>& column, int i) {
   return {load_lanes<F>(&column.x[i]), load_lanes<F>(&column.y[i]), load_lanes<F>(&column.z[i])};
 }
-template <class F>
-void store_lanes(Vec3Column& column, int i, const Vec3<F>& v) {
+template <class F, int rows>
+void store_lanes(Vec3ColumnOf<rows>& column, int i, const Vec3<F>& v) {
   store_lanes(&column.x[i], v.x);
   store_lanes(&column.y[i], v.y);
   store_lanes(&column.z[i], v.z);
 }
-template <class F>
-Color<F> load_lanes(const ColorColumn& column, int i) {
+template <class F, int rows>
+Color<F> load_lanes(const ColorColumnOf<rows>& column, int i) {
   return {load_lanes<F>(&column.r[i]), load_lanes<F>(&column.g[i]), load_lanes<F>(&column.b[i])};
 }
-template <class F>
-void store_lanes(ColorColumn& column, int i, const Color<F>& c) {
+template <class F, int rows>
+void store_lanes(ColorColumnOf<rows>& column, int i, const Color<F>& c) {
   store_lanes(&column.r[i], c.r);
   store_lanes(&column.g[i], c.g);
   store_lanes(&column.b[i], c.b);

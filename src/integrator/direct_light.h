@@ -13,13 +13,17 @@ struct DirectLightSample {
   LightSample<F> light;
   Vec3<F> origin, along;     ///< The shadow segment: where it starts, and from there to the light (m).
   Color<F> unshadowed;       ///< Radiance towards `wo`, weighted, where nothing hides the light.
+  Int<F> aim;                ///< Rank and piece of the light: near ones are near each other.
   Mask<F> needs_shadow_ray;  ///< Elsewhere it adds nothing, hidden or not.
 };
 
 template <class F>
 DirectLightSample<F> select(const Mask<F>& m, const DirectLightSample<F>& a, const DirectLightSample<F>& b) {
-  return {select(m, a.light, b.light), select(m, a.origin, b.origin), select(m, a.along, b.along),
+  return {select(m, a.light, b.light),
+          select(m, a.origin, b.origin),
+          select(m, a.along, b.along),
           select(m, a.unshadowed, b.unshadowed),
+          select(m, a.aim, b.aim),
           mask_or(mask_and(m, a.needs_shadow_ray), mask_and(mask_not(m), b.needs_shadow_ray))};
 }
 
@@ -71,6 +75,7 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   sample.along = sample.light.end - sample.origin;
   if (scene.medium) scattered = scattered * scene.medium->transmittance(sample.origin, sample.along);
   sample.unshadowed = scattered;
+  sample.aim = choice.rank * Int<F>(light_pieces) + sample.light.piece;
   // Not "greater than 0": a NaN must reach the sum, where it is reported.
   sample.needs_shadow_ray = mask_and(is_lit, mask_not(is_black(scattered)));
   return sample;

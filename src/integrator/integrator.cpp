@@ -316,11 +316,12 @@ IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& l
   for (std::int32_t light = 0; light < lights.count(); ++light) facets += lights.facet_count(light);
   // Where the cut of a tile holds each facet by itself, points stay better distributed without a choice among
   // candidates than it could make them, unless lobes are narrow.
-  constexpr int several = 4;
   const bool are_all_in_cut = facets <= LightCut::most_clusters;
+  constexpr int few = 4, several = 8, many = 16;
+  constexpr std::int64_t swarm = 1 << 16;  // Of facets: there a shadow ray takes as long as many candidates.
   LightSamples samples = *rules->light_samples();
-  samples.candidates = are_all_in_cut ? 1 : several;
-  samples.glossy_candidates = several;
+  samples.candidates = are_all_in_cut ? 1 : facets <= swarm ? several : many;
+  samples.glossy_candidates = std::max(samples.candidates, few);
   return {integrator.name, rules->with_light_samples(samples)};
 }
 

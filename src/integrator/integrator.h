@@ -64,9 +64,8 @@ IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::str
 /// unknown one, and where the integrator samples no lights.
 IntegratorSettings with_light_technique(const IntegratorSettings& integrator, std::string_view technique);
 
-/// The same with what it leaves to the scene decided: candidates are 1 where a cut of the light tree
-/// (lightsampler/light_cuts.h) has room for every facet and surfaces are diffuse,
-/// else 4.
+/// The same with what it leaves to the scene decided: candidates, by how many facets the lights have and
+/// by whether surfaces are diffuse (docs/light_sampling.md).
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights);
 
 /// Over the lights of a scene, which it may not outlive; where the integrator samples none, any.

@@ -9,14 +9,10 @@
 #include "integrator/resampling.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace etendue {
-
-/// Which of the samples of a vertex: of several of the lights, and of the light sampler's passes.
-struct LightSampleNumber {
-  int vertex = 0, number = 0;
-  std::int32_t pass = 0;
-};
 
 /// One light sample of the paths i, i + 1 ...: one candidate, or one of several. The candidates of all light
 /// samples follow one another in one sequence over the samples of the pixel; each pass has its own, as every
@@ -24,9 +20,9 @@ struct LightSampleNumber {
 template <class F>
 DirectLightSample<F> light_sample_of(const Scene& scene, const LightSampler& light_sampler,
                                      const PathRules& rules, const SampleBlock& block, int i,
-                                     const Vertex<F>& vertex, const LightSampleNumber& which) {
+                                     const Vertex<F>& vertex, const Receiver<F>& receiver,
+                                     const LightSampleNumber& which) {
   using U = UInt<F>;
-  const Receiver<F> receiver = receiver_at<F>(scene, block, i, vertex, which.vertex);
   const int light_samples = rules.light_count(which.vertex), few = rules.candidates(which.vertex),
             many = rules.glossy_candidates(which.vertex);
   Int<F> candidates(many);
@@ -58,26 +54,35 @@ DirectLightSample<F> light_sample_of(const Scene& scene, const LightSampler& lig
   return light.take();
 }
 
-/// For each path: a light sample, its shadow segment, and what it adds to the radiance where it is visible.
+/// For each path: the light samples `numbers`, the shadow segment of each, and what it adds to the radiance
+/// where it is visible.
 template <class F>
 [[gnu::noinline]] void sample_lights(const Scene& scene, const LightSampler& light_sampler,
                                      SampleBlock& block, const PathRules& rules,
-                                     const LightSampleNumber& which) {
+                                     std::span<const LightSampleNumber> numbers) {
   const PathColumns& path = block.path;
+  ShadowRays& shadow = block.shadow;
+  shadow.samples = int(numbers.size());
+  shadow.stride = path.padded_count;
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
     const Vertex<F> vertex(scene, load_ray<F>(path.ray, i), load_hit<F>(path.hit, i));
     if (!any(vertex.is_there)) {
-      store_lanes(&block.shadow_is_needed[i], Int<F>(0));
+      for (int k = 0; k < shadow.samples; ++k) store_lanes(&shadow.is_needed[shadow.row(k, i)], Int<F>(0));
       continue;
     }
-    const DirectLightSample<F> sample =
-        light_sample_of<F>(scene, light_sampler, rules, block, i, vertex, which);
-    store_lanes(block.unshadowed, i, sample.unshadowed * load_lanes<F>(path.throughput, i));
-    store_mask<F>(&block.shadow_is_needed[i], sample.needs_shadow_ray);
-    store_lanes(block.shadow_origin, i, sample.origin);
-    store_lanes(block.shadow_direction, i, sample.along);
-    store_lanes(&block.shadow_light[i], sample.light.light);
-    store_lanes(&block.shadow_piece[i], sample.light.piece);
+    const Receiver<F> receiver = receiver_at<F>(scene, block, i, vertex, numbers.front().vertex);
+    const Color<F> throughput = load_lanes<F>(path.throughput, i);
+    for (int k = 0; k < shadow.samples; ++k) {
+      const DirectLightSample<F> sample = light_sample_of<F>(scene, light_sampler, rules, block, i, vertex,
+                                                             receiver, numbers[std::size_t(k)]);
+      const int row = shadow.row(k, i);
+      store_lanes(shadow.unshadowed, row, sample.unshadowed * throughput);
+      store_mask<F>(&shadow.is_needed[row], sample.needs_shadow_ray);
+      store_lanes(shadow.origin, row, sample.origin);
+      store_lanes(shadow.along, row, sample.along);
+      store_lanes(&shadow.light[row], sample.light.light);
+      store_lanes(&shadow.aim[row], sample.aim);
+    }
   }
   block.clock.finish(Stage::light_samples);
 }
@@ -86,26 +91,24 @@ template <class F>
 template <class F>
 [[gnu::noinline]] void add_unshadowed(const Scene& scene, SampleBlock& block, int vertex,
                                       Coherence coherence) {
-  int padded = block.shadow_count;
-  while (padded % lane_count_v<F> != 0) block.order[std::size_t(padded++)] = -1;
-  const SegmentSpan segments{block.shadow_origin.x.data(),
-                             block.shadow_origin.y.data(),
-                             block.shadow_origin.z.data(),
-                             block.shadow_direction.x.data(),
-                             block.shadow_direction.y.data(),
-                             block.shadow_direction.z.data(),
-                             block.order.data(),
-                             padded,
-                             shadow_segment_end};
-  std::fill_n(block.shadow_is_free.begin(), block.path.padded_count, 0);
-  scene.rays.unoccluded(segments, block.shadow_is_free.data(), lane_count_v<F>, coherence);
-  for (int i = 0; i < block.path.padded_count; i += lane_count_v<F>) {
-    const Mask<F> is_free = load_mask<F>(&block.shadow_is_free[i]);
-    if (any(is_free))
-      add_contribution<F>(block, i, is_free, load_lanes<F>(block.unshadowed, i),
-                          {load_lanes<Int<F>>(&block.shadow_light[i]), Technique::light, vertex + 1});
-  }
-  block.counts.shadow_rays += block.shadow_count;
+  ShadowRays& shadow = block.shadow;
+  int padded = shadow.count;
+  while (padded % lane_count_v<F> != 0) shadow.order[std::size_t(padded++)] = -1;
+  const SegmentSpan segments{
+      shadow.origin.x.data(), shadow.origin.y.data(), shadow.origin.z.data(), shadow.along.x.data(),
+      shadow.along.y.data(),  shadow.along.z.data(),  shadow.order.data(),    padded,
+      shadow_segment_end};
+  std::fill_n(shadow.is_free.begin(), shadow.rows(), 0);
+  scene.rays.unoccluded(segments, shadow.is_free.data(), lane_count_v<F>, coherence);
+  for (int k = 0; k < shadow.samples; ++k)
+    for (int i = 0; i < block.path.padded_count; i += lane_count_v<F>) {
+      const int row = shadow.row(k, i);
+      const Mask<F> is_free = load_mask<F>(&shadow.is_free[row]);
+      if (any(is_free))
+        add_contribution<F>(block, i, is_free, load_lanes<F>(shadow.unshadowed, row),
+                            {load_lanes<Int<F>>(&shadow.light[row]), Technique::light, vertex + 1});
+    }
+  block.counts.shadow_rays += shadow.count;
   block.clock.finish(Stage::shadow_rays);
 }
 
@@ -113,19 +116,27 @@ template <class F>
 template <class F>
 void add_light_samples(const Scene& scene, const LightSampler& light_sampler, SampleBlock& block,
                        const PathRules& rules, int vertex, bool is_reordering) {
-  const std::int32_t lights_a_pass = light_sampler.passes() > 1 ? 1 : scene.lights.count();
-  const bool is_aimed = is_reordering && is_worth_aiming(block, vertex, lights_a_pass);
-  for (int number = 0; number < rules.light_count(vertex); ++number)
-    for (std::int32_t pass = 0; pass < light_sampler.passes(); ++pass) {
-      sample_lights<F>(scene, light_sampler, block, rules, {vertex, number, pass});
-      if (is_aimed)
-        aim_shadow_rays(scene, block);
-      else
-        keep_shadow_rays_in_order(block);
-      const bool is_coherent = is_aimed && are_aimed_packets_coherent(scene.lights);
-      add_unshadowed<F>(scene, block, vertex, is_coherent ? Coherence::coherent : Coherence::incoherent);
-      if (block.watcher) block.watcher->on_light_sample(block, vertex, number, pass);
-    }
+  const std::int32_t passes = light_sampler.passes();
+  const std::int64_t samples = std::int64_t(rules.light_count(vertex)) * passes;
+  for (std::int64_t first = 0; first < samples; first += ShadowRays::most_samples) {
+    std::array<LightSampleNumber, ShadowRays::most_samples> numbers;
+    const int count = int(std::min<std::int64_t>(samples - first, ShadowRays::most_samples));
+    for (int k = 0; k < count; ++k)
+      numbers[std::size_t(k)] = {vertex, int((first + k) / passes), std::int32_t((first + k) % passes)};
+    sample_lights<F>(scene, light_sampler, block, rules, std::span(numbers).first(std::size_t(count)));
+    // Each pass goes to one light, and neighbours in the light tree are near each other.
+    const bool are_lights_near = passes > 1 || light_sampler.tree();
+    const bool is_aimed = is_reordering && is_worth_aiming(block, vertex, passes > 1 ? 1 : count,
+                                                           are_lights_near ? 1 : scene.lights.count());
+    if (is_aimed)
+      aim_shadow_rays(block, light_sampler.ranks());
+    else
+      keep_shadow_rays_in_order(block);
+    const bool is_coherent = is_aimed && are_aimed_packets_coherent(scene.lights);
+    add_unshadowed<F>(scene, block, vertex, is_coherent ? Coherence::coherent : Coherence::incoherent);
+    if (block.watcher)
+      for (int k = 0; k < count; ++k) block.watcher->on_light_sample(block, numbers[std::size_t(k)], k);
+  }
 }
 
 }  // namespace etendue

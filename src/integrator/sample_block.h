@@ -4,6 +4,7 @@
 #include "integrator/block_counts.h"
 #include "integrator/columns.h"
 #include "integrator/layer_rule.h"
+#include "integrator/shadow_rays.h"
 #include "lightsampler/light_cuts.h"
 
 #include <cstdint>
@@ -40,9 +41,8 @@ struct SampleBlock;
 
 /// Benchmarks and replays look on. `vertex` is the number of the vertex.
 struct BlockWatcher {
-  /// The shadow rays of one light sample have been cast; of several samples, and of the light sampler's
-  /// passes, which one.
-  std::function<void(const SampleBlock&, int vertex, int number, std::int32_t pass)> on_light_sample;
+  /// The shadow rays of one light sample have been cast: the k-th of those that the block holds.
+  std::function<void(const SampleBlock&, const LightSampleNumber&, int k)> on_light_sample;
   /// The samples of a vertex have been taken; of several BSDF samples at the first vertex, each of which goes
   /// on to vertices of its own, which one.
   std::function<void(const SampleBlock&, int vertex, int branch)> on_vertex;
@@ -66,14 +66,9 @@ struct SampleBlock {
   Column<std::int32_t> cut;            ///< Which of them.
   bool has_cuts = false;
 
-  // A light sample: its shadow segment (t from 0 to 1), and what it adds where nothing hides it.
-  Vec3Column shadow_origin, shadow_direction;
-  ColorColumn unshadowed;
-  Column<std::int32_t> shadow_is_needed, shadow_is_free;
-  Column<std::int32_t> shadow_light, shadow_piece;  ///< Which light it samples, and which part of it.
-  Column<std::int32_t> bin;                         ///< Of the shadow ray in the order of casting.
-  Column<std::int32_t> order;  ///< Rows of `path`: of shadow rays as they are traced, then -1; of paths kept.
-  int shadow_count = 0;
+  ShadowRays shadow;
+
+  Column<std::int32_t> kept;  ///< Rows of `path` that go on.
 
   RayColumns next_ray;  ///< Along the direction that the BSDF was sampled for.
 

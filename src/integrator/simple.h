@@ -16,6 +16,8 @@ namespace etendue {
 template <class F>
 void sample_simple_light(const Scene& scene, SampleBlock& block, const SimpleLight& light) {
   const Vec3<F> light_position{F(light.position.x), F(light.position.y), F(light.position.z)};
+  block.shadow.samples = 1;
+  block.shadow.stride = block.path.padded_count;
   for (int i = 0; i < block.path.padded_count; i += lane_count_v<F>) {
     const Vertex<F> vertex(scene, load_ray<F>(block.path.ray, i), load_hit<F>(block.path.hit, i));
     const Vec3<F> to_light = light_position - vertex.position;
@@ -23,13 +25,13 @@ void sample_simple_light(const Scene& scene, SampleBlock& block, const SimpleLig
     const F cosine = dot(vertex.ns, to_light) * sqrt(inv_distance_sq);
     const F scale = cosine * inv_distance_sq * F(0.25f * inv_pi * inv_pi);
     const Vec3<F> origin = vertex.origin_of_ray(to_light);
-    store_lanes(block.unshadowed, i,
+    store_lanes(block.shadow.unshadowed, i,
                 Color<F>{F(light.energy.r) * scale, F(light.energy.g) * scale, F(light.energy.b) * scale});
     // Not "greater than 0": a NaN must reach the sum, where it is reported.
-    store_mask<F>(&block.shadow_is_needed[i], mask_and(vertex.is_surface, mask_not(cosine <= F(0))));
-    store_lanes(block.shadow_origin, i, origin);
-    store_lanes(&block.shadow_light[i], Int<F>(-1));
-    store_lanes(block.shadow_direction, i, light_position - origin);
+    store_mask<F>(&block.shadow.is_needed[i], mask_and(vertex.is_surface, mask_not(cosine <= F(0))));
+    store_lanes(block.shadow.origin, i, origin);
+    store_lanes(&block.shadow.light[i], Int<F>(-1));
+    store_lanes(block.shadow.along, i, light_position - origin);
   }
   block.clock.finish(Stage::light_samples);
 }

@@ -2,6 +2,7 @@
 // stratification (alias_table.h is faster and does not).
 #pragma once
 
+#include "base/gather.h"
 #include "base/simd_math.h"
 
 #include <cstdint>

@@ -99,7 +99,8 @@ void MeshLights::add_facets(const Geometry& geometry, std::int32_t geometry_id) 
     centers.push_back((box.low + box.high) * 0.5f);
   }
   const std::vector<std::int32_t> pieces = pieces_of(centers);
-  facet_pieces_.insert(facet_pieces_.end(), pieces.begin(), pieces.end());
+  for (std::int32_t k = 0; k < facets.count(); ++k)
+    polygons_.set_label(polygons_.count() - facets.count() + k, pieces[std::size_t(k)]);
   const AliasTable table = make_alias_table(areas);
   facet_threshold_.insert(facet_threshold_.end(), table.threshold.begin(), table.threshold.end());
   facet_alias_.insert(facet_alias_.end(), table.alias.begin(), table.alias.end());

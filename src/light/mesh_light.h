@@ -46,11 +46,11 @@ class MeshLights {
           select(is_whole, request.pmf * share_of<F>(request.row, first + request.facet), request.pmf);
     }
     const Int<F> polygon = first + request.facet;
-    const Int<F> pieces = gather(facet_pieces_.data(), polygon);
+    const PolygonLight<F> light(polygons_, polygon, request.receiver, request.is_twosided, request.technique,
+                                request.lanes);
+    const Int<F> pieces = light.label();
     const Int<F> piece = (pieces & Int<F>(0xff)) + to_int(to_unit_float(request.u.x) * to_float(pieces >> 8));
-    return PolygonLight<F>(polygons_, polygon, request.receiver, request.is_twosided, request.technique,
-                           request.lanes)
-        .sample(request, longest_edge_.at(request.row), piece);
+    return light.sample(request, longest_edge_.at(request.row), piece);
   }
 
   template <class F>
@@ -121,11 +121,11 @@ class MeshLights {
   LookupTable<float> longest_edge_;  ///< m
   std::vector<LightBounds> bounds_;
   std::int32_t finely_built_count_ = 0;
-  // Per facet of all lights: its polygon, the alias table, pieces as of triangles.
+  // Per facet of all lights: its polygon, labelled with pieces as of triangles, and the alias table.
   LookupTable<std::int32_t> first_facet_, facet_count_;  ///< Per light.
   PolygonTable polygons_;
   std::vector<std::uint32_t> facet_threshold_;
-  std::vector<std::int32_t> facet_alias_, facet_pieces_;
+  std::vector<std::int32_t> facet_alias_;
   std::vector<std::int32_t> facet_of_triangle_;  ///< Of all lights: its number in its light.
   // Per triangle of all lights: the alias table, a corner and two edges, and the triangle's pieces: the first
   // in the low byte, their number above.

@@ -3,6 +3,7 @@
 
 #include "base/warp.h"
 #include "light/light_sample.h"
+#include "light/polygon_table.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
 #include "light/technique.h"
@@ -33,6 +34,8 @@ class PolygonLight {
       by_cosine_ = mask_and(mask_and(is_seen_, mask_not(by_area_)),
                             less(receiver.lit_sides, Int<F>(lit_side::front | lit_side::back)));
   }
+
+  const Int<F>& label() const { return fan_.label; }  ///< Of the polygon in its table.
 
   /// \param longest_edge of the triangles there (m), for the clearance \param piece of the light
   LightSample<F> sample(const LightRequest<F>& request, const F& longest_edge, const Int<F>& piece) const {

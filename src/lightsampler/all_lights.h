@@ -12,10 +12,11 @@ class AllLights {
 
   static constexpr bool chooses_facets = false;
   std::int32_t passes() const { return count_; }
+  std::int32_t ranks() const { return count_; }
 
   template <class F>
   LightChoice<F> choose(const Receiver<F>& /*receiver*/, const UInt<F>& u, std::int32_t pass) const {
-    return {Int<F>(pass), Int<F>(whole_light), u, F(1)};
+    return {Int<F>(pass), Int<F>(whole_light), u, F(1), Int<F>(pass)};
   }
 
   template <class F>

@@ -15,7 +15,10 @@ LightChoice<F> choose_by_power(const LightTree& tree, const Int<F>& begin, const
   const I low = gather(shares, begin), size = gather(shares, end) - low;
   const UInt<F> scaled = mul_hi(u, as_uint(size));
   const I wanted = low + as_int(scaled);
-  I first = begin, last = end - I(1);
+  // Between what the guide says, which is mostly one facet or two.
+  const I guide_at = wanted >> tree.guide_shift();
+  I first = max(begin, gather(tree.guide(), guide_at)),
+    last = min(end - I(1), gather(tree.guide() + 1, guide_at));
   while (true) {
     const Mask<F> is_open = less(first, last);
     if (!any(is_open)) break;
@@ -30,7 +33,8 @@ LightChoice<F> choose_by_power(const LightTree& tree, const Int<F>& begin, const
   const F u_left = min((to_float(wanted - from) + below) / max(to_float(part), F(1)), F(0x1.fffffep-1f));
   const I at = first * I(2);
   return {gather(&tree.facets()->light, at), gather(&tree.facets()->facet, at),
-          as_uint(to_int(u_left * F(0x1p24f))) << 8, pmf * to_float(part) / max(to_float(size), F(1))};
+          as_uint(to_int(u_left * F(0x1p24f))) << 8, pmf * to_float(part) / max(to_float(size), F(1)),
+          tree.rank_of<F>(first)};
 }
 template <class F>
 F pmf_by_power(const LightTree& tree, const Int<F>& begin, const Int<F>& end, const Int<F>& place) {

@@ -41,8 +41,13 @@ template <class F>
 ClusterLanes<F> gather_clusters(const LightCluster* clusters, const Int<F>& which) {
   constexpr std::int32_t words = sizeof(LightCluster) / sizeof(float);
   const Int<F> at = which * Int<F>(words);
-  return {gather_vec3<F>(&clusters->center.x, at), gather_vec3<F>(&clusters->axis.x, at),
-          gather(&clusters->radius_sq, at), gather(&clusters->cos_normals, at), gather(&clusters->power, at)};
+  const std::array<F, 4> sphere = gather_four(&clusters->center.x, at),
+                         cone = gather_four(&clusters->axis.x, at);
+  return {{sphere[0], sphere[1], sphere[2]},
+          {cone[0], cone[1], cone[2]},
+          sphere[3],
+          cone[3],
+          gather(&clusters->power, at)};
 }
 
 /// cos(max(0, a - b)) of two angles in [0, pi].

@@ -21,6 +21,7 @@ namespace etendue {
 
 /// Made from the lights of a scene, of which there must be one; it may not outlive them.
 ///   passes(): how many choices make one light sample; each of them is to be sampled, and they are added up.
+///   ranks(): how many there are of LightChoice::rank.
 ///   choose(receiver, u, pass): a light for the receiver, in pass 0 .. passes() - 1.
 ///   chooses_facets: whether choices are of facets of lights; else of whole lights.
 ///   pmf(receiver, light, facet): the probability with which the passes choose this light, or this facet;
@@ -31,6 +32,7 @@ concept LightSamplerModel = std::constructible_from<Sampler, const Lights&> &&
                             requires(const Sampler& sampler, const Receiver<float>& receiver) {
                               { Sampler::chooses_facets } -> std::convertible_to<bool>;
                               { sampler.passes() } -> std::same_as<std::int32_t>;
+                              { sampler.ranks() } -> std::same_as<std::int32_t>;
                               {
                                 sampler.template choose<float>(receiver, 0u, 0)
                               } -> std::same_as<LightChoice<float>>;
@@ -45,6 +47,9 @@ class LightSampler {
 
   std::int32_t passes() const {
     return std::visit([](const auto& sampler) { return sampler.passes(); }, sampler_);
+  }
+  std::int32_t ranks() const {
+    return std::visit([](const auto& sampler) { return sampler.ranks(); }, sampler_);
   }
   template <class F>
   LightChoice<F> choose(const Receiver<F>& receiver, const UInt<F>& u, std::int32_t pass) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -234,6 +235,14 @@ LightTree::LightTree(const Lights& lights) {
     powers.push_back(facet.power);
   }
   append_cumulative_shares(powers, shares_);
+  guide_shift_ =
+      std::max(std::countr_zero(std::uint32_t(inversion_whole)) - int(std::bit_width(facets.size())), 0);
+  std::int32_t last = 0;
+  for (std::int32_t at = 0; at <= inversion_whole >> guide_shift_; ++at) {
+    while (last + 1 < facet_count() && shares_[std::size_t(last) + 1] <= at << guide_shift_) ++last;
+    guide_.push_back(last);
+  }
+  while (ranks() > most_ranks) ++rank_shift_;
   for (std::size_t i = 0; i < clusters_.size(); ++i)
     if (clusters_[i].first_child == 0)
       std::fill(leaves_.begin() + clusters_[i].begin, leaves_.begin() + clusters_[i].end, std::int32_t(i));

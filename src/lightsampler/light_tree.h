@@ -31,12 +31,24 @@ class LightTree {
   const LightFacet* facets() const { return facets_.data(); }
   /// Cumulative shares of power, see light/inversion_table.h; none is 0 but of what has no power.
   const std::int32_t* shares() const { return shares_.data(); }
+  /// For the high bits of a cumulative share, the last facet that begins at or before it; one entry more than
+  /// there are values of these bits, `share >> guide_shift()`.
+  const std::int32_t* guide() const { return guide_.data(); }
+  int guide_shift() const { return guide_shift_; }
   const std::int32_t* leaves() const { return leaves_.data(); }  ///< The cluster that holds it.
 
   /// The place of a facet; lights must have one.
   template <class F>
   Int<F> place_of(const Int<F>& light, const Int<F>& facet) const {
     return gather(places_.data(), gather(first_of_light_.data(), light) + facet);
+  }
+
+  /// Of a place among most_ranks at most: neighbours have the same, or the next.
+  static constexpr std::int32_t most_ranks = 1 << 14;
+  std::int32_t ranks() const { return ((facet_count() - 1) >> rank_shift_) + 1; }
+  template <class F>
+  Int<F> rank_of(const Int<F>& place) const {
+    return place >> rank_shift_;
   }
 
   /// Lights that shine from everywhere have no place in the tree.
@@ -49,7 +61,8 @@ class LightTree {
  private:
   std::vector<LightCluster> clusters_;
   std::vector<LightFacet> facets_;
-  std::vector<std::int32_t> shares_, leaves_;
+  std::vector<std::int32_t> shares_, guide_, leaves_;
+  int guide_shift_ = 0, rank_shift_ = 0;
   std::vector<std::int32_t> first_of_light_;  ///< Into places_; -1: beside.
   std::vector<std::int32_t> places_;          ///< Of the facets of light 0, of light 1 ...
   std::vector<std::int32_t> beside_;

@@ -17,6 +17,7 @@ class PowerLights {
 
   static constexpr bool chooses_facets = false;
   std::int32_t passes() const { return 1; }
+  std::int32_t ranks() const { return count(); }
 
   /// By inversion, which keeps the order of the random numbers and so their stratification. u_left has
   /// 2^32 values times the light's share, 2^24 at most (a float's), and 16 at the least share: the
@@ -26,7 +27,8 @@ class PowerLights {
     const Int<F> first(0);
     const InversionSample<F> sample = sample_by_inversion<F>(shares_.data(), first, count(), u);
     const UInt<F> u_left = as_uint(to_int(sample.u_left * F(0x1p24f))) << 8;
-    return {sample.index, Int<F>(whole_light), u_left, inversion_pmf<F>(shares_.data(), first, sample.index)};
+    return {sample.index, Int<F>(whole_light), u_left, inversion_pmf<F>(shares_.data(), first, sample.index),
+            sample.index};
   }
 
   template <class F>

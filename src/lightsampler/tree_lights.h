@@ -17,6 +17,7 @@ class TreeLights {
 
   static constexpr bool chooses_facets = true;
   std::int32_t passes() const { return 1; }
+  std::int32_t ranks() const { return tree_->ranks() + std::int32_t(tree_->lights_beside().size()); }
   const LightTree& tree() const { return *tree_; }
 
   template <class F>
@@ -29,7 +30,7 @@ class TreeLights {
     const F pmf(1.0f / float(alike));
     const Mask<F> is_in_tree = mask_not(less(which, Int<F>(std::int32_t(beside.size()))));
     const Int<F> light = gather(beside.data(), select(is_in_tree, Int<F>(0), which));
-    LightChoice<F> choice{light, Int<F>(0), u_left, pmf};
+    LightChoice<F> choice{light, Int<F>(0), u_left, pmf, Int<F>(tree_->ranks()) + which};
     return any(is_in_tree) ? select(is_in_tree, choose_in_tree<F>(receiver, u_left, pmf), choice) : choice;
   }
 

@@ -13,11 +13,13 @@ class UniformLights {
 
   static constexpr bool chooses_facets = false;
   std::int32_t passes() const { return 1; }
+  std::int32_t ranks() const { return std::int32_t(count_); }
 
   template <class F>
   LightChoice<F> choose(const Receiver<F>& /*receiver*/, const UInt<F>& u, std::int32_t /*pass*/) const {
     const UInt<F> n(count_);
-    return {as_int(mul_hi(u, n)), Int<F>(whole_light), u * n, F(pmf_)};
+    const Int<F> light = as_int(mul_hi(u, n));
+    return {light, Int<F>(whole_light), u * n, F(pmf_), light};
   }
 
   template <class F>

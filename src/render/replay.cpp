@@ -39,19 +39,21 @@ std::unique_ptr<SampleBlock> block_of(const RenderSettings& settings, const Samp
 }
 
 /// What the light sample was that the block has just cast the shadow ray of.
-SampleTrace::LightSample light_sample_of(const Scene& scene, const LightSampler& light_sampler,
-                                         const PathRules& rules, const SampleBlock& block,
-                                         const LightSampleNumber& which) {
+SampleTrace::LightSample trace_of(const Scene& scene, const LightSampler& light_sampler,
+                                  const PathRules& rules, const SampleBlock& block,
+                                  const LightSampleNumber& which, int k) {
   const PathColumns& path = block.path;
   const Vertex<F> vertex(scene, load_ray<F>(path.ray, 0), load_hit<F>(path.hit, 0));
   const DirectLightSample<F> sample =
-      etendue::light_sample_of<F>(scene, light_sampler, rules, block, 0, vertex, which);
+      light_sample_of<F>(scene, light_sampler, rules, block, 0, vertex,
+                         receiver_at<F>(scene, block, 0, vertex, which.vertex), which);
+  const int row = block.shadow.row(k, 0);
   SampleTrace::LightSample trace{sample.light.light,
                                  sample.light.end,
                                  sample.light.radiance_over_pdf,
                                  sample.light.pdf_solid_angle,
-                                 load_lanes<F>(block.unshadowed, 0),
-                                 block.shadow_is_needed[0] != 0,
+                                 load_lanes<F>(block.shadow.unshadowed, row),
+                                 block.shadow.is_needed[row] != 0,
                                  false,
                                  {}};
   if (!trace.is_shadow_ray_cast) return trace;
@@ -98,10 +100,8 @@ SampleTrace replay(const Scene& scene, const RenderSettings& settings, const Sam
   const PathRules* rules = integrator.path_rules();
   std::optional<SampleTrace::LightSample> light_sample;
   const BlockWatcher watcher{
-      .on_light_sample =
-          [&](const SampleBlock& at, int vertex, int number, std::int32_t pass) {
-            light_sample = light_sample_of(scene, light_sampler, *rules, at, {vertex, number, pass});
-          },
+      .on_light_sample = [&](const SampleBlock& at, const LightSampleNumber& which,
+                             int k) { light_sample = trace_of(scene, light_sampler, *rules, at, which, k); },
       .on_vertex =
           [&](const SampleBlock& at, int vertex, int branch) {
             trace.vertices.push_back(vertex_of(scene, *rules, at, vertex, branch));

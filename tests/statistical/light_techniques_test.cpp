@@ -6,6 +6,7 @@
 // swapped; a sector's azimuth is uniform, or has no Newton step, or one; a height has u squared; the long
 // side is taken for the short ones; what is below the horizon is not cut off; a radius has no root; no
 // polygon is around the zenith.
+#include "light/polygon_table.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
 #include "polygon_cases.h"

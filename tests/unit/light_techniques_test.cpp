@@ -6,6 +6,7 @@
 // points have one weight; every measure is called accurate; polygons of half a radian are small; the sine of
 // small angles has an absolute error of 1e-7; arcs beyond a right angle are mirrored.
 #include "base/angles.h"
+#include "light/polygon_table.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
 #include "polygon_cases.h"

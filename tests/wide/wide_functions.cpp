@@ -8,6 +8,7 @@
 #include "bsdf/bsdf.h"
 #include "geometry/surface_uv.h"
 #include "integrator/weights.h"
+#include "light/polygon_table.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
 #include "lightsampler/light_importance.h"
