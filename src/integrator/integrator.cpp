@@ -48,18 +48,17 @@ PathRules whitted_rules(Heuristic) { return PathRules::whitted({}); }
 PathRules path_ems_rules(Heuristic) { return PathRules::paths(ByLights{}); }
 PathRules path_mats_rules(Heuristic) { return PathRules::paths(ByBsdf{}); }
 PathRules path_mis_rules(Heuristic heuristic) { return PathRules::paths(ByBoth{heuristic}); }
-/// What has been measured to be best, docs/light_sampling.md.
-ByBoth best_rules(Heuristic heuristic) {
+/// What has been measured to be best, docs/light_sampling.md. \param light_samples at each vertex
+ByBoth best_rules(Heuristic heuristic, int light_samples) {
   return {.heuristic = heuristic,
-          .lights = {.count = 4,
+          .lights = {.count = light_samples,
                      .sampler = "tree",
-                     .later_count = 1,
                      .candidates = 0,
                      .technique = LightTechnique::automatic},
           .only_where_glossy = true};
 }
-PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic)); }
-PathRules direct_light_rules(Heuristic heuristic) { return PathRules::direct(best_rules(heuristic)); }
+PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic, 1)); }
+PathRules direct_light_rules(Heuristic heuristic) { return PathRules::direct(best_rules(heuristic, 4)); }
 
 constexpr Row table[]{
     {"path", "path",
