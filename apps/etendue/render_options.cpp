@@ -65,7 +65,7 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
                      "How lights are chosen, instead of the integrator's way: uniform, power, all or tree");
   command.add_option("--technique", options.technique,
                      "Where on a polygon light samples lie, instead of the integrator's way: area, "
-                     "solid_angle, projected or auto");
+                     "solid_angle, projected, ltc or auto");
   command
       .add_option("--candidates", options.candidates,
                   "Of how many candidates each light sample at the first vertex is one, chosen by what they "

@@ -9,6 +9,7 @@
 #include "bsdf/bsdf_sample.h"
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
+#include "bsdf/glossy_lobes.h"
 #include "bsdf/microfacet.h"
 #include "bsdf/mirror.h"
 #include "bsdf/phong.h"
@@ -70,6 +71,7 @@ class Materials {
 
   std::int32_t count() const { return std::int32_t(all_.size()); }
   const Material& operator[](std::int32_t id) const { return all_[std::size_t(id)]; }
+  const GlossyLobes& lobes() const { return lobes_; }
   bool have_textures() const { return have_textures_; }  ///< Some need to know uv.
   /// Of `lit_side`, for a viewer in front.
   template <class F>
@@ -84,6 +86,7 @@ class Materials {
  private:
   std::vector<Material> all_;
   LookupTable<std::int32_t> lit_sides_, is_diffuse_;
+  GlossyLobes lobes_;
   bool have_textures_ = false;
 };
 

@@ -122,13 +122,11 @@ template <class F>
     move(path.eta);
     if (keeps_receivers) {
       ReceiverColumns& receiver = path.receiver;
-      for (Vec3Column* vectors : {&receiver.position, &receiver.ng, &receiver.ns}) {
-        move(vectors->x);
-        move(vectors->y);
-        move(vectors->z);
-      }
+      const auto move_vector = [&](Vec3Column& v) { move(v.x), move(v.y), move(v.z); };
+      for (Vec3Column* v : {&receiver.position, &receiver.ng, &receiver.ns}) move_vector(*v);
       move(receiver.lit_sides);
       move(receiver.cut);
+      if (receiver.lobes) move(receiver.material), move_vector(receiver.wo);
     }
     move_from(path.ray.origin.x, block.next_ray.origin.x);
     move_from(path.ray.origin.y, block.next_ray.origin.y);

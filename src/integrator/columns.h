@@ -94,15 +94,24 @@ struct ReceiverColumns {
   Vec3Column position, ng, ns;
   Column<std::int32_t> lit_sides, cut;
   const LightCuts* cuts = nullptr;
+  const GlossyLobes* lobes = nullptr;  ///< Without them no material and no wo is stored.
+  Column<std::int32_t> material;
+  Vec3Column wo;
 };
 template <class F>
 Receiver<F> load_receiver(const ReceiverColumns& receivers, int i) {
-  return {load_lanes<F>(receivers.position, i),
-          load_lanes<F>(receivers.ng, i),
-          load_lanes<F>(receivers.ns, i),
-          load_lanes<Int<F>>(&receivers.lit_sides[i]),
-          receivers.cuts,
-          load_lanes<Int<F>>(&receivers.cut[i])};
+  Receiver<F> receiver{load_lanes<F>(receivers.position, i),
+                       load_lanes<F>(receivers.ng, i),
+                       load_lanes<F>(receivers.ns, i),
+                       load_lanes<Int<F>>(&receivers.lit_sides[i]),
+                       receivers.cuts,
+                       load_lanes<Int<F>>(&receivers.cut[i]),
+                       receivers.lobes};
+  if (receivers.lobes) {
+    receiver.material = load_lanes<Int<F>>(&receivers.material[i]);
+    receiver.wo = load_lanes<F>(receivers.wo, i);
+  }
+  return receiver;
 }
 template <class F>
 void store_receiver(ReceiverColumns& receivers, int i, const Receiver<F>& receiver) {
@@ -112,6 +121,11 @@ void store_receiver(ReceiverColumns& receivers, int i, const Receiver<F>& receiv
   store_lanes(&receivers.lit_sides[i], receiver.lit_sides);
   store_lanes(&receivers.cut[i], receiver.cut);
   receivers.cuts = receiver.cuts;
+  receivers.lobes = receiver.lobes;
+  if (receiver.lobes) {
+    store_lanes(&receivers.material[i], receiver.material);
+    store_lanes(receivers.wo, i, receiver.wo);
+  }
 }
 
 }  // namespace etendue

@@ -83,7 +83,13 @@ struct Vertex {
     const Int<F> sides = scene.materials.lit_sides<F>(material), both(lit_side::front | lit_side::back);
     const Mask<F> is_seen = mask_or(dot(wo, ns) > F(0), equal(sides, both));
     const Int<F> seen_sides = select(is_seen, sides, Int<F>(lit_side::none));
-    return {position, ng, ns, select(is_surface, seen_sides, Int<F>(lit_side::medium))};
+    Receiver<F> receiver{position, ng, ns, select(is_surface, seen_sides, Int<F>(lit_side::medium))};
+    if (scene.materials.lobes().have_any()) {
+      receiver.lobes = &scene.materials.lobes();
+      receiver.material = material;
+      receiver.wo = wo;
+    }
+    return receiver;
   }
 
   /// Where BSDF samples find nothing that light samples do not find better: on diffuse surfaces.

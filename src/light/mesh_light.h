@@ -8,8 +8,8 @@
 #include "base/simd_math.h"
 #include "base/warp.h"
 #include "geometry/geometry.h"
+#include "light/glossy_polygon_light.h"
 #include "light/light_table.h"
-#include "light/polygon_light.h"
 
 #include <cstdint>
 #include <vector>
@@ -46,8 +46,8 @@ class MeshLights {
           select(is_whole, request.pmf * share_of<F>(request.row, first + request.facet), request.pmf);
     }
     const Int<F> polygon = first + request.facet;
-    const PolygonLight<F> light(polygons_, polygon, request.receiver, request.is_twosided, request.technique,
-                                request.lanes);
+    const GlossyPolygonLight<F> light(polygons_, polygon, request.receiver, request.is_twosided,
+                                      request.technique, request.lanes);
     const Int<F> pieces = light.label();
     const Int<F> piece = (pieces & Int<F>(0xff)) + to_int(to_unit_float(request.u.x) * to_float(pieces >> 8));
     return light.sample(request, longest_edge_.at(request.row), piece);
@@ -60,7 +60,7 @@ class MeshLights {
       return pdf_solid_angle_at(hit, receiver, pmf * pdf_area_.at(row));
     const Int<F> polygon = first_facet_.at(row) + hit.facet;
     const Mask<F> every_lane = F(0) < F(1);
-    const F pdf = PolygonLight<F>(polygons_, polygon, receiver, every_lane, hit.technique, every_lane)
+    const F pdf = GlossyPolygonLight<F>(polygons_, polygon, receiver, every_lane, hit.technique, every_lane)
                       .pdf_solid_angle(hit);
     return pdf * (hit.is_facet_chosen ? pmf : pmf * share_of<F>(row, polygon));
   }

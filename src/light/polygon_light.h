@@ -25,7 +25,7 @@ class PolygonLight {
     is_seen_ = mask_and(lanes, fan_.height > F(0));
     if (technique == LightTechnique::solid_angle || technique == LightTechnique::projected_solid_angle)
       by_area_ = none;
-    if (technique == LightTechnique::automatic) {
+    if (technique == LightTechnique::automatic || technique == LightTechnique::transformed_cosine) {
       constexpr float far = 4;  // Sides away: there it hardly matters where on the polygon.
       by_area_ = mask_and(lanes, length_sq(fan_.apex) > F(far * far) * fan_.area);
     }
@@ -86,6 +86,9 @@ class PolygonLight {
                   });
     return pdf;
   }
+
+  const PolygonFan<F>& fan() const { return fan_; }
+  const Mask<F>& is_seen() const { return is_seen_; }  ///< From its front; of the lanes that ask.
 
  private:
   /// by_cosine(polygon, frame, lanes) and by_solid_angle(polygon, lanes), each where some lanes are its: the

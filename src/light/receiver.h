@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/lane_vec.h"
+#include "bsdf/glossy_lobes.h"
 #include "bsdf/lit_side.h"
 
 namespace etendue {
@@ -18,6 +19,10 @@ struct Receiver {
   /// The cut of the light tree to choose from, see lightsampler/light_cuts.h; null: none.
   const LightCuts* cuts = nullptr;
   Int<F> cut = Int<F>(0);
+  /// The lobes of the materials, from the one here towards the viewer; null: none has a lobe.
+  const GlossyLobes* lobes = nullptr;
+  Int<F> material = Int<F>(0);
+  Vec3<F> wo = {F(0), F(0), F(0)};
 };
 
 }  // namespace etendue

@@ -7,8 +7,8 @@
 #include "base/simd_math.h"
 #include "base/warp.h"
 #include "geometry/geometry.h"
+#include "light/glossy_polygon_light.h"
 #include "light/light_table.h"
-#include "light/polygon_light.h"
 
 #include <array>
 #include <cstdint>
@@ -38,8 +38,8 @@ class RectangleLights {
       return light_sample_at(sample_position<F>(request.row, request.u), request);
     const Int<F> piece =
         to_int(to_unit_float(request.u.x) * F(4)) * Int<F>(4) + to_int(to_unit_float(request.u.y) * F(4));
-    return PolygonLight<F>(polygons_, request.row, request.receiver, request.is_twosided, request.technique,
-                           request.lanes)
+    return GlossyPolygonLight<F>(polygons_, request.row, request.receiver, request.is_twosided,
+                                 request.technique, request.lanes)
         .sample(request, diagonal_.at(request.row), piece);
   }
 
@@ -49,7 +49,7 @@ class RectangleLights {
     if (hit.technique == LightTechnique::area)
       return pdf_solid_angle_at(hit, receiver, pmf * pdf_area_.at(row));
     const Mask<F> every_lane = F(0) < F(1);
-    return pmf * PolygonLight<F>(polygons_, row, receiver, every_lane, hit.technique, every_lane)
+    return pmf * GlossyPolygonLight<F>(polygons_, row, receiver, every_lane, hit.technique, every_lane)
                      .pdf_solid_angle(hit);
   }
 

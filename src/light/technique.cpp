@@ -10,7 +10,7 @@ namespace etendue {
 
 namespace {
 /// In the order of the enumerators.
-constexpr std::array<std::string_view, 4> names{"area", "solid_angle", "projected", "auto"};
+constexpr std::array<std::string_view, 5> names{"area", "solid_angle", "projected", "auto", "ltc"};
 }  // namespace
 
 std::string_view light_technique_name(LightTechnique technique) { return names[std::size_t(technique)]; }

@@ -14,9 +14,11 @@ namespace etendue {
 ///     scattered from both sides, and where floats cannot (ProjectedPolygon::is_accurate), as solid_angle.
 ///   automatic: as area where the polygon is small for its distance, else as solid_angle: of several
 ///     stratified samples projected_solid_angle leaves no less noise, and takes longer.
-enum class LightTechnique { area, solid_angle, projected_solid_angle, automatic };
+///   transformed_cosine: at glossy receivers also a direction with density in proportion to the lobe
+///     (LobePolygon), else as automatic, which does that where the lobe varies over the polygon.
+enum class LightTechnique { area, solid_angle, projected_solid_angle, automatic, transformed_cosine };
 
-/// area, solid_angle, projected or auto.
+/// area, solid_angle, projected, auto or ltc.
 std::string_view light_technique_name(LightTechnique technique);
 /// Throws InputError with the known names.
 LightTechnique light_technique_from_name(std::string_view name);

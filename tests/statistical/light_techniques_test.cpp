@@ -1,4 +1,5 @@
-// Samples of convex polygons by solid angle and by projected solid angle fall where they should.
+// Samples of convex polygons by solid angle, by projected solid angle and by glossy lobes fall where they
+// should.
 //
 // False-alarm rate of this file: 1e-5 (Sidak over its tests), fixed seeds.
 // Seen to fail when: a triangle is chosen by half of the solid angle; what is left of u is not stretched
@@ -6,6 +7,8 @@
 // swapped; a sector's azimuth is uniform, or has no Newton step, or one; a height has u squared; the long
 // side is taken for the short ones; what is below the horizon is not cut off; a radius has no root; no
 // polygon is around the zenith.
+#include "bsdf/glossy_lobes.h"
+#include "light/lobe_polygon.h"
 #include "light/polygon_table.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
@@ -22,7 +25,7 @@ namespace etendue {
 namespace {
 
 constexpr double family_level = 1e-5;
-constexpr int family_size = 200;  // At least as many tests as are made below.
+constexpr int family_size = 400;  // At least as many tests as are made below.
 constexpr int samples = 20000;
 
 /// A grid over the box of a polygon in its plane.
@@ -125,6 +128,56 @@ TEST(LightTechniques, PutSamplesWhereTheirDensitySays) {
       expect_shares(
           c, [&](const Outline& part) { return projected_solid_angle(part, extended(c.ns)); },
           [&](const Vec2f& u) { return frame.world_from_local(projected.sample(u)); }, what + ", projected");
+    }
+  }
+}
+
+/// Of each kind, smooth to rough.
+GlossyLobes fitted_lobes() {
+  GlossyLobes lobes;
+  for (const ltc::Table* table : {&ltc::ggx, &ltc::beckmann, &ltc::phong})
+    for (const float roughness : {0.01f, 0.1f, 0.3f, 1.0f}) {
+      const GlossyLobe lobe{*table, roughness, [](float) { return 1.0f; }, 0};
+      lobes.add(&lobe);
+    }
+  return lobes;
+}
+
+Vec3l seen_through(const LinearlyTransformedCosine<float>& lobe, const Vec3l& v) {
+  return {dot(extended(lobe.row_x), v), dot(extended(lobe.row_y), v), dot(extended(lobe.row_z), v)};
+}
+
+TEST(LightTechniques, PutSamplesWhereALobeIs) {
+  constexpr int polygons = 10;
+  const GlossyLobes lobes = fitted_lobes();
+  std::mt19937 random(31);
+  for (std::size_t kind = 0; kind < polygon_case_kinds.size(); ++kind) {
+    PolygonCases cases(22);
+    for (int found = 0, tried = 0; found < polygons && tried < 3000; ++tried) {
+      const PolygonCase c = cases.next(kind);
+      PolygonTable table;
+      const PolygonFan<float> fan = table.seen_from<float>(c.position, table.add(c.corners), true);
+      // Every other lobe is aimed at a corner.
+      const auto unit = [&] { return 2 * float(random() >> 8) * 0x1p-24f - 1; };
+      const Vec3f aside{unit(), unit(), unit()};
+      const Vec3f aim = tried % 2 == 0 ? normalize(fan.apex) : normalize(aside);
+      if (!(dot(aim, c.ns) > 0.02f)) continue;
+      const Vec3f wo = normalize(c.ns * (2 * dot(aim, c.ns)) - aim);
+      const LinearlyTransformedCosine<float> lobe =
+          lobes.at<float>(std::int32_t(random() % 12), c.ns, wo).shape;
+      const LobePolygon<float> polygon(fan, lobe);
+      if (!(fan.height > 0) || !polygon.is_accurate() || !(c.condition() < 300)) continue;
+      const auto measure = [&](const Outline& part) {
+        Outline through;
+        for (const Vec3l& corner : part) through.push_back(seen_through(lobe, corner));
+        return projected_solid_angle(through, {0, 0, 1});
+      };
+      const double share = double(measure(c.outline())) / std::numbers::pi;
+      EXPECT_NEAR(polygon.share(), share, 5e-3 * share) << polygon_case_kinds[kind] << " " << tried;
+      ++found;
+      expect_shares(
+          c, measure, [&](const Vec2f& u) { return polygon.sample(u); },
+          std::string(polygon_case_kinds[kind]) + " " + std::to_string(tried) + ", lobe");
     }
   }
 }

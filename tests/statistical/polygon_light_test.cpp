@@ -14,18 +14,21 @@
 
 #include <array>
 #include <gtest/gtest.h>
+#include <optional>
 #include <random>
+#include <span>
 #include <string>
 
 namespace etendue {
 namespace {
 
 constexpr double family_level = 1e-5;
-constexpr int family_size = 300;  // At least as many tests as are made below.
+constexpr int family_size = 500;  // At least as many tests as are made below.
 constexpr int samples = 20000;
 
 constexpr std::array techniques{LightTechnique::area, LightTechnique::solid_angle,
-                                LightTechnique::projected_solid_angle, LightTechnique::automatic};
+                                LightTechnique::projected_solid_angle, LightTechnique::automatic,
+                                LightTechnique::transformed_cosine};
 
 /// A flat hexagon, a square and a sliver, bent against each other: three facets of eight triangles.
 Mesh bent_mesh() {
@@ -74,12 +77,14 @@ double irradiance(const Scene& scene, bool is_twosided, const Receiver<float>& r
   return double(sum);
 }
 
-LightHit<float> hit_of(const Scene& scene, const Receiver<float>& receiver, const LightSample<float>& sample,
-                       bool is_facet_chosen, LightTechnique technique) {
+/// None where a side of two facets is so near that rounding decides between them.
+std::optional<LightHit<float>> hit_of(const Scene& scene, const Receiver<float>& receiver,
+                                      const LightSample<float>& sample, bool is_facet_chosen,
+                                      LightTechnique technique) {
   // Where the segment ends, but for the clearance; the normal of the polygon there, on the receiver's side.
   const Vec3f at = sample.end;
   Vec3f ng{0, 0, 0};
-  double nearest = 1e9;
+  double nearest = 1e9, next_facet = 1e9;
   std::int32_t primitive = 0;
   for (std::size_t p = 0; p < scene.polygons.size(); ++p) {
     const std::vector<Vec3f>& polygon = scene.polygons[p];
@@ -89,23 +94,30 @@ LightHit<float> hit_of(const Scene& scene, const Receiver<float>& receiver, cons
       const Vec3f side = polygon[(k + 1) % polygon.size()] - polygon[k];
       outside = std::max(outside, -double(dot(cross(side, at - polygon[k]), n)) / length(side));
     }
-    if (outside < nearest) nearest = outside, ng = n, primitive = std::int32_t(p);
+    const std::int32_t facet = scene.lights.facet_at<float>(0, std::int32_t(p), true);
+    if (outside < nearest) {
+      if (facet != scene.lights.facet_at<float>(0, primitive, true)) next_facet = nearest;
+      nearest = outside, ng = n, primitive = std::int32_t(p);
+    } else if (facet != scene.lights.facet_at<float>(0, primitive, true)) {
+      next_facet = std::min(next_facet, outside);
+    }
   }
+  if (next_facet < 2e-5) return std::nullopt;
   if (dot(ng, sample.wi) > 0) ng = -ng;
   const float distance = dot(at - receiver.position, sample.wi);
-  return {receiver.position + sample.wi * distance,
-          ng,
-          sample.wi,
-          scene.lights.facet_at<float>(0, primitive, true),
-          is_facet_chosen,
-          technique};
+  return LightHit<float>{receiver.position + sample.wi * distance,
+                         ng,
+                         sample.wi,
+                         scene.lights.facet_at<float>(0, primitive, true),
+                         is_facet_chosen,
+                         technique};
 }
 
 void expect_irradiance(const Scene& scene, bool is_twosided, const Receiver<float>& receiver,
-                       const std::string& what) {
+                       const std::string& what, std::span<const LightTechnique> by = techniques) {
   const double exact = irradiance(scene, is_twosided, receiver);
   const std::int32_t facets = scene.lights.facet_count(0);
-  for (const LightTechnique technique : techniques)
+  for (const LightTechnique technique : by)
     for (const bool is_by_facet : {false, true}) {
       std::mt19937 random(3);
       RunningStatistics statistics;
@@ -121,8 +133,9 @@ void expect_irradiance(const Scene& scene, bool is_twosided, const Receiver<floa
           value = std::max(cosine, 0.0) * sample.radiance_over_pdf.r;
           EXPECT_NEAR(length(sample.wi), 1, 1e-6);
           if (i % 16 == 0 && cosine > 1e-3) {
-            const float found = scene.lights.pdf_solid_angle<float>(
-                0, pmf, receiver, hit_of(scene, receiver, sample, is_by_facet, technique), true);
+            const auto hit = hit_of(scene, receiver, sample, is_by_facet, technique);
+            const float found = hit ? scene.lights.pdf_solid_angle<float>(0, pmf, receiver, *hit, true)
+                                    : sample.pdf_solid_angle;
             EXPECT_NEAR(found, sample.pdf_solid_angle, 1e-4 * sample.pdf_solid_angle)
                 << what << ", technique " << light_technique_name(technique);
           }
@@ -153,6 +166,73 @@ TEST(PolygonLights, SendWhatLambertSaysByEveryTechnique) {
       expect_irradiance(mesh_scene(is_twosided), is_twosided, receiver, "mesh, " + what);
       expect_irradiance(rectangle_scene(is_twosided), is_twosided, receiver, "rectangle, " + what);
     }
+}
+
+TEST(PolygonLights, SendTheSameToGlossyReceivers) {
+  GlossyLobes lobes;
+  for (const float roughness : {0.03f, 0.4f})
+    for (const float diffuse : {0.0f, 0.5f}) {
+      const GlossyLobe lobe{ltc::ggx, roughness, [](float) { return 0.5f; }, diffuse};
+      lobes.add(&lobe);
+    }
+  const Vec3f up{0, 0, 1};
+  for (const bool is_twosided : {false, true})
+    for (const Vec3f& position : {Vec3f{0.3f, 0.2f, 0}, {0.4f, 0.7f, 1.8f}, {3, 2, -9}, {0.2f, 0.6f, 3.5f}})
+      for (std::int32_t material = 0; material < 4; ++material) {
+        const Vec3f ns = position.z > 3 ? -up : up;
+        Receiver<float> receiver{position, ns, ns, front};
+        receiver.lobes = &lobes;
+        receiver.material = material;
+        // The mirror image of the viewer is on the light, then beside it.
+        const Vec3f place = material % 2 == 0 ? Vec3f{0.3f, 0.4f, 2} : Vec3f{-0.8f, 0.4f, 2};
+        const Vec3f to_light = normalize(place - position);
+        receiver.wo = ns * (2 * dot(ns, to_light)) - to_light;
+        const std::string what = ", lobe " + std::to_string(material) + (is_twosided ? ", two-sided" : "");
+        constexpr std::array by_lobe{LightTechnique::automatic, LightTechnique::transformed_cosine};
+        expect_irradiance(mesh_scene(is_twosided), is_twosided, receiver, "mesh" + what, by_lobe);
+        expect_irradiance(rectangle_scene(is_twosided), is_twosided, receiver, "rectangle" + what, by_lobe);
+      }
+}
+
+TEST(PolygonLights, ShineIntoAPhongLobeAsAlongItsAxis) {
+  // A regular polygon with the area of a disk that is seen under 5 degrees (half). Of the lobe cos^n a part
+  // 1 - cos^(n + 1) 5 degrees is there.
+  constexpr int corners = 64;
+  const double half_angle = 5 * std::numbers::pi / 180, inner = 2 * std::numbers::pi / corners;
+  const double radius = std::tan(half_angle) * std::sqrt(inner / std::sin(inner));
+  Mesh mesh;
+  mesh.positions.push_back({0, 0, 1});
+  for (int k = 0; k < corners; ++k)
+    mesh.positions.push_back({float(radius * std::cos(k * inner)), float(radius * std::sin(k * inner)), 1});
+  for (std::uint32_t k = 0; k < corners; ++k)
+    mesh.indices.insert(mesh.indices.end(), {0, 1 + (k + 1) % corners, 1 + k});
+  Scene scene;
+  scene.lights.add<MeshLights>({1, 1, 1}, "disk", scene.geometry, scene.geometry.add_mesh(mesh, {0, 0}));
+  for (const auto& [exponent, exact] :
+       {std::pair{10, 0.041070926}, std::pair{100, 0.319596048}, std::pair{1000, 0.977992524}}) {
+    GlossyLobes lobes;
+    const GlossyLobe lobe{ltc::phong, std::sqrt(2 / (float(exponent) + 2)), [](float) { return 1.0f; }, 0};
+    lobes.add(&lobe);
+    const Vec3f up{0, 0, 1};
+    Receiver<float> receiver{{0, 0, 0}, up, up, front};
+    receiver.lobes = &lobes;
+    receiver.wo = up;
+    for (const LightTechnique technique : techniques) {
+      std::mt19937 random(6);
+      RunningStatistics statistics;
+      for (int i = 0; i < 4 * samples; ++i) {
+        const std::uint32_t u_x = random();
+        const LightSample<float> sample = scene.lights.sample<float>(
+            0, 1, receiver, {u_x, std::uint32_t(random())}, true, whole_light, technique);
+        const double density = (exponent + 1) / (2 * std::numbers::pi) * std::pow(sample.wi.z, exponent);
+        statistics.add(sample.is_there ? density * sample.radiance_over_pdf.r : 0);
+      }
+      const MeanTest test = t_test(statistics, exact, exact * exact * 1e-9);
+      EXPECT_FALSE(is_rejected(test.p_value, family_level, family_size))
+          << "exponent " << exponent << ", technique " << light_technique_name(technique) << ": "
+          << statistics.mean << " +- " << statistics.standard_error() << ", exact " << exact;
+    }
+  }
 }
 
 TEST(PolygonLights, AreSampledOnBothSidesOfAReceiverThatScattersThere) {
