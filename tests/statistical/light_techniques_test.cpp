@@ -6,8 +6,9 @@
 // back; the point on the far side is uniform along it, or the point towards it; two of Lexell's cosines are
 // swapped; a sector's azimuth is uniform, or has no Newton step, or one; a height has u squared; the long
 // side is taken for the short ones; what is below the horizon is not cut off; a radius has no root; no
-// polygon is around the zenith.
-#include "bsdf/glossy_lobes.h"
+// polygon is around the zenith; a lobe's polygon keeps its height, or is not turned for receivers behind it; the
+// axes of a lobe are mirrored; its density has the third power of the length.
+#include "bsdf/bsdf.h"
 #include "light/lobe_polygon.h"
 #include "light/polygon_table.h"
 #include "light/projected_polygon.h"
@@ -174,12 +175,62 @@ TEST(LightTechniques, PutSamplesWhereALobeIs) {
       };
       const double share = double(measure(c.outline())) / std::numbers::pi;
       EXPECT_NEAR(polygon.share(), share, 5e-3 * share) << polygon_case_kinds[kind] << " " << tried;
+      const std::vector<Vec3f> turned(c.corners.rbegin(), c.corners.rend());
+      const PolygonFan<float> back = table.seen_from<float>(c.position, table.add(turned), true, true);
+      EXPECT_NEAR(LobePolygon<float>(back, lobe).share(), share, 5e-3 * share) << "from behind, " << tried;
       ++found;
       expect_shares(
           c, measure, [&](const Vec2f& u) { return polygon.sample(u); },
           std::string(polygon_case_kinds[kind]) + " " + std::to_string(tried) + ", lobe");
     }
   }
+}
+
+Material phong_lobe(float exponent) {
+  Phong phong;
+  phong.exponent = exponent;
+  phong.specular_probability = 1;
+  return phong;
+}
+Material metal(MicrofacetDistribution::Kind kind, float alpha) {
+  RoughConductor metal;
+  metal.distribution = {kind, alpha};
+  return metal;
+}
+Material coat(float alpha) {
+  Microfacet coat;
+  coat.distribution.alpha = alpha;
+  coat.coat_probability = 1;
+  return coat;
+}
+
+TEST(GlossyLobes, HaveTheShapeOfTheirMaterials) {
+  // The second moment of samples of the mixture, as estimates of the material's density: 1.05 for the
+  // best, less where it loses samples below the horizon.
+  using enum MicrofacetDistribution::Kind;
+  const Materials materials({phong_lobe(5), phong_lobe(50), phong_lobe(5000), metal(ggx, 0.005f),
+                             metal(ggx, 0.05f), metal(ggx, 0.3f), metal(beckmann, 0.07f), coat(0.2f)});
+  std::mt19937 random(8);
+  const auto unit = [&] { return float(random() >> 8) * 0x1p-24f; };
+  for (std::int32_t id = 0; id < materials.count(); ++id)
+    for (const float angle : {0.0f, 0.3f, 0.8f, 1.2f}) {
+      ASSERT_TRUE(materials.lobes().has<float>(id));
+      const Vec3f wo{0.8f * std::sin(angle), -0.6f * std::sin(angle), std::cos(angle)};
+      const LinearlyTransformedCosine<float> lobe = materials.lobes().at<float>(id, {0, 0, 1}, wo).shape;
+      double sum = 0;
+      for (int i = 0; i < samples; ++i) {
+        const Vec2f u{unit(), unit()};
+        const BsdfSample<float> sample = std::visit(
+            [&](const auto& model) {
+              return model.at(Vec2f{0, 0}, true).sample(wo, u);
+            },
+            materials[id]);
+        const double by_lobe = lobe.density_times_pi(sample.wi_local) / std::numbers::pi;
+        sum += sample.pdf_solid_angle / (0.95 * by_lobe + 0.05 / (2 * std::numbers::pi));
+      }
+      EXPECT_LT(sum / samples, 1.6) << "material " << id << ", angle " << angle;
+      EXPECT_GT(sum / samples, 0.8) << "material " << id << ", angle " << angle;
+    }
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 // Seen to fail when: the share of a facet is left out of a sample's density; facets are numbered as
 // triangles; the back of a polygon is always seen as its front; the frame is not turned there; receivers that
 // scatter from both sides get the cosine's density; a fan's triangles are chosen with wrong shares; hits have
-// the density of another technique.
+// the density of another technique, or that without the lobe; u is not stretched back where a sample is by
+// the lobe; a lobe's density has the third power of the length; its x is not turned behind a polygon.
 #include "light/light.h"
 #include "polygon_cases.h"
 #include "stats/running.h"
