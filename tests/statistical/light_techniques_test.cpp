@@ -6,8 +6,8 @@
 // back; the point on the far side is uniform along it, or the point towards it; two of Lexell's cosines are
 // swapped; a sector's azimuth is uniform, or has no Newton step, or one; a height has u squared; the long
 // side is taken for the short ones; what is below the horizon is not cut off; a radius has no root; no
-// polygon is around the zenith; a lobe's polygon keeps its height, or is not turned for receivers behind it; the
-// axes of a lobe are mirrored; its density has the third power of the length.
+// polygon is around the zenith; a lobe's polygon keeps its height, or is not turned for receivers behind it;
+// the axes of a lobe are mirrored; its density has the third power of the length.
 #include "bsdf/bsdf.h"
 #include "light/lobe_polygon.h"
 #include "light/polygon_table.h"
