@@ -25,10 +25,8 @@ class PolygonLight {
     is_seen_ = mask_and(lanes, fan_.height > F(0));
     if (technique == LightTechnique::solid_angle || technique == LightTechnique::projected_solid_angle)
       by_area_ = none;
-    if (technique == LightTechnique::automatic || technique == LightTechnique::transformed_cosine) {
-      constexpr float far = 4;  // Sides away: there it hardly matters where on the polygon.
-      by_area_ = mask_and(lanes, length_sq(fan_.apex) > F(far * far) * fan_.area);
-    }
+    if (technique == LightTechnique::automatic || technique == LightTechnique::transformed_cosine)
+      by_area_ = mask_and(lanes, is_small_from(length_sq(fan_.apex), fan_.area));
     by_cosine_ = none;
     if (technique == LightTechnique::projected_solid_angle)
       by_cosine_ = mask_and(mask_and(is_seen_, mask_not(by_area_)),

@@ -5,18 +5,25 @@
 
 namespace etendue {
 
-/// Of polygons: the facets of meshes, and rectangles. Spheres are sampled by solid angle and disks by area,
-/// whatever is asked for.
+/// Of polygons (the facets of meshes, and rectangles) and disks. Spheres are sampled by solid angle, whatever
+/// is asked for.
 ///   area: a point uniform on the surface, as course handouts have it.
-///   solid_angle: a direction uniform among those in which the receiver sees the polygon.
-///   projected_solid_angle: a direction with density in proportion to the cosine at the receiver; where light
-///   is
-///     scattered from both sides, and where floats cannot (ProjectedPolygon::is_accurate), as solid_angle.
-///   automatic: as area where the polygon is small for its distance, else as solid_angle: of several
-///     stratified samples projected_solid_angle leaves no less noise, and takes longer.
-///   transformed_cosine: at glossy receivers also a direction with density in proportion to the lobe
-///     (LobePolygon), else as automatic, which does that where the lobe varies over the polygon.
+///   solid_angle: a direction uniform among those in which the receiver sees the light.
+///   projected_solid_angle: a direction with density in proportion to the cosine at the receiver; disks, and
+///     where light is scattered from both sides, or floats cannot (ProjectedPolygon::is_accurate), as
+///     solid_angle.
+///   automatic: as area where the light is small for its distance (is_small_from), else as solid_angle: of
+///     several stratified samples projected_solid_angle leaves no less noise, and takes longer.
+///   transformed_cosine: of polygons at glossy receivers also a direction with density in proportion to the
+///     lobe (LobePolygon), else as automatic, which does that where the lobe varies over the polygon.
 enum class LightTechnique { area, solid_angle, projected_solid_angle, automatic, transformed_cosine };
+
+/// Whether it hardly matters where on a light of this area (m^2): from four sides of a square as large on.
+template <class F>
+auto is_small_from(const F& distance_sq, const F& area) {
+  constexpr float sides = 4;
+  return distance_sq > F(sides * sides) * area;
+}
 
 /// area, solid_angle, projected, auto or ltc.
 std::string_view light_technique_name(LightTechnique technique);

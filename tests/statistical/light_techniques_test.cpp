@@ -13,13 +13,13 @@
 #include "light/polygon_table.h"
 #include "light/projected_polygon.h"
 #include "light/spherical_polygon.h"
+#include "plane_cells.h"
 #include "polygon_cases.h"
 #include "stats/chi_squared.h"
 #include "stats/significance.h"
 
 #include <functional>
 #include <gtest/gtest.h>
-#include <limits>
 #include <string>
 
 namespace etendue {
@@ -28,67 +28,6 @@ namespace {
 constexpr double family_level = 1e-5;
 constexpr int family_size = 400;  // At least as many tests as are made below.
 constexpr int samples = 20000;
-
-/// A grid over the box of a polygon in its plane.
-class PlaneCells {
- public:
-  explicit PlaneCells(const Outline& outline) : outline_(outline) {
-    ng_ = {0, 0, 0};
-    for (std::size_t k = 2; k < outline.size(); ++k)
-      ng_ = ng_ + cross(outline[k - 1] - outline[0], outline[k] - outline[0]);
-    ng_ = normalize(ng_);
-    axes_[0] = normalize(outline[1] - outline[0]);
-    axes_[1] = cross(ng_, axes_[0]);
-    for (std::size_t i = 0; i < 2; ++i)
-      for (const Vec3l& corner : outline) {
-        low_[i] = std::min(low_[i], dot(corner, axes_[i]));
-        high_[i] = std::max(high_[i], dot(corner, axes_[i]));
-      }
-  }
-
-  std::size_t cell_of(const Vec3l& direction) const {
-    const Vec3l p = direction * (dot(outline_[0], ng_) / dot(direction, ng_));
-    std::size_t cell = 0;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const long double across = (dot(p, axes_[i]) - low_[i]) / (high_[i] - low_[i]) * side;
-      cell = cell * side + std::size_t(std::clamp<long double>(across, 0, side - 1));
-    }
-    return cell;
-  }
-
-  /// \param measure of an outline
-  template <class Measure>
-  std::vector<double> shares(const Measure& measure) const {
-    std::vector<double> all;
-    const long double total = measure(outline_);
-    for (int i = 0; i < side; ++i)
-      for (int j = 0; j < side; ++j) {
-        const Outline part = clipped(strip(outline_, 0, i), axes_[1], edge(1, j));
-        all.push_back(double(measure(clipped(part, -axes_[1], -edge(1, j + 1))) / total));
-      }
-    return all;
-  }
-
- private:
-  static constexpr int side = 8;
-
-  long double edge(std::size_t axis, int k) const {
-    // The outermost cells take what rounding has moved out.
-    constexpr long double out = 1e-3L;
-    if (k == 0) return low_[axis] - out * (high_[axis] - low_[axis]);
-    if (k == side) return high_[axis] + out * (high_[axis] - low_[axis]);
-    return low_[axis] + (high_[axis] - low_[axis]) * k / side;
-  }
-  Outline strip(const Outline& outline, std::size_t axis, int k) const {
-    return clipped(clipped(outline, axes_[axis], edge(axis, k)), -axes_[axis], -edge(axis, k + 1));
-  }
-
-  Outline outline_;
-  Vec3l ng_, axes_[2];
-  long double low_[2] = {std::numeric_limits<long double>::max(), std::numeric_limits<long double>::max()};
-  long double high_[2] = {std::numeric_limits<long double>::lowest(),
-                          std::numeric_limits<long double>::lowest()};
-};
 
 /// \param sample gives a direction
 void expect_shares(const PolygonCase& c, const std::function<long double(const Outline&)>& measure,
