@@ -64,7 +64,7 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
   command.add_option("--light-sampler", options.light_sampler,
                      "How lights are chosen, instead of the integrator's way: uniform, power, all or tree");
   command.add_option("--technique", options.technique,
-                     "Where on a polygon light samples lie, instead of the integrator's way: area, "
+                     "Where on a light its samples lie, instead of the integrator's way: area, "
                      "solid_angle, projected, ltc or auto");
   command
       .add_option("--candidates", options.candidates,

@@ -40,14 +40,10 @@ class DiskLights {
     const Vec3<F> to_light = seen.to_center + along_x + along_y;
     const F clear = clearance<F>(
         seen.ng, abs_each(seen.center) + abs_each(along_x) + abs_each(along_y) + abs_each(to_light), F(0));
-    const F pdf = request.pmf * chosen.pdf;
-    const LightSample<F> by_direction{.wi = normalize(to_light),
-                                      .end = request.receiver.position + to_light + seen.ng * clear,
-                                      .radiance_over_pdf = request.strength * select(m, F(1) / pdf, F(0)),
-                                      .pdf_solid_angle = select(m, pdf, F(0)),
-                                      .is_there = m,
-                                      .light = request.light,
-                                      .piece = piece_at(u)};
+    const F arriving = select(m, F(1) / chosen.pdf, F(0));
+    const LightSample<F> by_direction =
+        light_sample_towards<F>(normalize(to_light), request.receiver.position + to_light + seen.ng * clear,
+                                {arriving, arriving, arriving}, chosen.pdf, m, request, piece_at(u));
     return select(m, by_direction, result);
   }
 

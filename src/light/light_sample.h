@@ -107,7 +107,7 @@ F pdf_solid_angle_at(const LightHit<F>& hit, const Receiver<F>& receiver, const 
       F(0));
 }
 
-/// A sample of a light that is no surface.
+/// A sample by its direction: of a light that is no surface, or of one that is not sampled by area.
 /// \param arriving incident radiance over density, or the Dirac ratio, per unit of the light's strength
 /// \param pdf_solid_angle of the direction, the choice of the light not included
 template <class F>

@@ -25,6 +25,15 @@ struct PolygonFan {
   Mask<F> is_turned;      ///< The receiver is behind a polygon that shines from there too.
   Int<F> corners, label;  ///< The label is the table's user's.
   int most;               ///< The greatest of `corners` among the lanes that ask.
+
+  /// Of the farthest corner from the receiver (m).
+  F farthest() const {
+    F distance_sq = length_sq(apex);
+    for (int k = 1; k < most; ++k)
+      distance_sq = max(distance_sq,
+                        select(less(Int<F>(k), corners), length_sq(apex + from_apex[std::size_t(k)]), F(0)));
+    return sqrt(distance_sq);
+  }
 };
 
 }  // namespace etendue

@@ -22,15 +22,14 @@ class PolygonLight {
         fan_(table.seen_from<F>(receiver.position, row, lanes, is_twosided)),
         by_area_(lanes) {
     const Mask<F> none = F(0) > F(1);
+    by_cosine_ = none;
     is_seen_ = mask_and(lanes, fan_.height > F(0));
     if (technique == LightTechnique::solid_angle || technique == LightTechnique::projected_solid_angle)
       by_area_ = none;
     if (technique == LightTechnique::automatic || technique == LightTechnique::transformed_cosine)
       by_area_ = mask_and(lanes, is_small_from(length_sq(fan_.apex), fan_.area));
-    by_cosine_ = none;
     if (technique == LightTechnique::projected_solid_angle)
-      by_cosine_ = mask_and(mask_and(is_seen_, mask_not(by_area_)),
-                            less(receiver.lit_sides, Int<F>(lit_side::front | lit_side::back)));
+      by_cosine_ = mask_and(is_seen_, mask_not(by_area_), is_lit_from_one_side(receiver));
   }
 
   const Int<F>& label() const { return fan_.label; }  ///< Of the polygon in its table.
@@ -65,7 +64,10 @@ class PolygonLight {
     by_directions(
         [&](const ProjectedPolygon<F>& polygon, const Frame<F>& frame, const Mask<F>& m) {
           const Vec3<F> wi = frame.world_from_local(polygon.sample(u));
-          take(m, wi * (-fan_.height / dot(wi, fan_.ng)), cosine_density(polygon, frame, wi));
+          // Along the polygon's own plane rounding must not put it behind the receiver, nor beyond the
+          // polygon.
+          const F distance = min(fan_.height / max(-dot(wi, fan_.ng), F(1e-30f)), fan_.farthest());
+          take(m, wi * distance, cosine_density(polygon, frame, wi));
         },
         [&](const SphericalPolygon<F>& polygon, const Mask<F>& m) {
           take(m, polygon.sample(u), F(1) / polygon.solid_angle());
@@ -107,10 +109,9 @@ class PolygonLight {
     }
   }
 
-  /// Of the side on which light is scattered. Behind a two-sided polygon its corners turn the other way, and
-  /// so does the frame.
+  /// Behind a two-sided polygon its corners turn the other way, and so does the frame.
   Frame<F> receiver_frame() const {
-    Frame<F> frame(select(equal(receiver_.lit_sides, Int<F>(lit_side::back)), -receiver_.ns, receiver_.ns));
+    Frame<F> frame(lit_normal(receiver_));
     frame.s = select(fan_.is_turned, -frame.s, frame.s);
     return frame;
   }

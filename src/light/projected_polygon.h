@@ -108,7 +108,7 @@ class ProjectedPolygon {
       const F triangle = spoke + parts_[k] - next_spoke.signed_projected_solid_angle;
       parts_[k] = select(is_beside, select(is_triangle, max(triangle, F(0)), F(0)), parts_[k]);
       spoke = next_spoke.signed_projected_solid_angle;
-      angles_ = angles_ + select(is_beside, side.angle + next_spoke.angle, F(0));
+      angles_ = angles_ + select(mask_and(is_beside, is_triangle), side.angle + next_spoke.angle, F(0));
     }
   }
 

@@ -25,4 +25,16 @@ struct Receiver {
   Vec3<F> wo = {F(0), F(0), F(0)};
 };
 
+/// Whether the cosine at the receiver says how much of what arrives is scattered: not where light is
+/// scattered from both sides, or in the medium.
+template <class F>
+Mask<F> is_lit_from_one_side(const Receiver<F>& receiver) {
+  return less(receiver.lit_sides, Int<F>(lit_side::front | lit_side::back));
+}
+/// The shading normal on the side from which light is scattered.
+template <class F>
+Vec3<F> lit_normal(const Receiver<F>& receiver) {
+  return select(equal(receiver.lit_sides, Int<F>(lit_side::back)), -receiver.ns, receiver.ns);
+}
+
 }  // namespace etendue

@@ -1,5 +1,5 @@
-// Spherical area lights: a direction uniform in the cone that the sphere fills; from inside, a point uniform
-// on it.
+// Spherical area lights: a direction uniform in the cone that the sphere fills, or by the cosine at the
+// receiver; from inside, a point uniform on it.
 #pragma once
 
 #include "base/frame.h"
@@ -8,6 +8,8 @@
 #include "base/warp.h"
 #include "geometry/bounds.h"
 #include "light/light_table.h"
+#include "light/projected_cap.h"
+#include "light/sphere_cone.h"
 
 #include <cstdint>
 #include <vector>
@@ -26,13 +28,21 @@ class SphereLights {
 
   template <class F>
   LightSample<F> sample(const LightRequest<F>& request) const {
-    return light_sample_at(sample_position<F>(request.row, request.receiver.position, request.u), request);
+    if (request.technique != LightTechnique::projected_solid_angle) return sample_cone(request);
+    const ByCosine<F> by_cosine(cone_of<F>(request.row, request.receiver.position), request.receiver);
+    const Mask<F> m = mask_and(request.lanes, by_cosine.lanes);
+    const LightSample<F> other = all(m) ? no_light_sample<F>() : sample_cone(request);
+    return any(m) ? select(m, sample_cosine(by_cosine, request, m), other) : other;
   }
 
   template <class F>
   F pdf_solid_angle(const Int<F>& row, const F& pmf, const Receiver<F>& receiver,
                     const LightHit<F>& hit) const {
-    return pdf_solid_angle_at(hit, receiver, pmf * pdf_area<F>(row, receiver.position, hit.position, hit.ng));
+    const F by_cone =
+        pdf_solid_angle_at(hit, receiver, pmf * pdf_area<F>(row, receiver.position, hit.position, hit.ng));
+    if (hit.technique != LightTechnique::projected_solid_angle) return by_cone;
+    const ByCosine<F> by_cosine(cone_of<F>(row, receiver.position), receiver);
+    return select(by_cosine.lanes, pmf * by_cosine.cap.pdf(hit.wi), by_cone);
   }
 
   double power(std::int32_t row, const Sphere& /*scene_bounds*/) const {
@@ -46,24 +56,14 @@ class SphereLights {
 
   template <class F>
   LightPoint<F> sample_position(const Int<F>& row, const Vec3<F>& reference, const Vec2<UInt<F>>& u) const {
-    const Cone<F> cone(*this, row, reference);
+    const SphereCone<F> cone = cone_of<F>(row, reference);
     const Vec2<F> u_cone{to_unit_float(u.x), to_unit_float(u.y)};
-    // From the angle at the receiver to the angle at the centre, from which the point follows without
-    // cancellation (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th ed., section 6.2.4).
     const F one_minus_cos = u_cone.x * cone.one_minus_cos_max;
-    const F cos_theta = F(1) - one_minus_cos;
-    const F sin_theta_sq = max(one_minus_cos * (F(2) - one_minus_cos), F(0));
-    const F sin_ratio_sq = min(sin_theta_sq / cone.sin_max_sq, F(1));
-    const F sin_max = sqrt(cone.sin_max_sq);
-    const F cos_center = sin_ratio_sq * sin_max + cos_theta * sqrt(F(1) - sin_ratio_sq);
-    // sin(asin(ratio) - theta) as a quotient: from the cosine, points below a receiver that all but touches
-    // the sphere would lie on a few rings.
-    const F sin_center = sqrt(sin_ratio_sq) * (F(1) - cone.sin_max_sq) /
-                         (cos_theta + sqrt(max(cone.sin_max_sq - sin_theta_sq, F(0x1p-60f))));
+    const Vec2<F> center =
+        cone.at_center(max(one_minus_cos * (F(2) - one_minus_cos), F(0)), F(1) - one_minus_cos);
     F sine, cosine;
     sincos_turns(u_cone.y, sine, cosine);
-    Vec3<F> ng =
-        Frame<F>(-cone.to_center).world_from_local({sin_center * cosine, sin_center * sine, cos_center});
+    Vec3<F> ng = Frame<F>(-cone.to_center).world_from_local({center.x * cosine, center.x * sine, center.y});
     if (any(mask_not(cone.is_outside))) {
       const F z = F(1) - (u_cone.x + u_cone.x), across = sqrt(max(F(1) - z * z, F(0)));
       ng = select(cone.is_outside, ng, Vec3<F>{across * cosine, across * sine, z});
@@ -73,14 +73,14 @@ class SphereLights {
     point.ng = ng;
     point.clearance = clearance<F>(ng, abs_each(cone.center) + abs_each(ng) * cone.radius, F(0));
     point.pdf_area = pdf_area<F>(row, reference, point.position, ng);
-    point.piece = to_int(u_cone.y * F(4)) * Int<F>(4) + to_int(u_cone.x * F(4));
+    point.piece = piece_at(u_cone);
     return point;
   }
 
   /// The density per area (1/m^2) of sample_position.
   template <class F>
   F pdf_area(const Int<F>& row, const Vec3<F>& reference, const Vec3<F>& position, const Vec3<F>& ng) const {
-    const Cone<F> cone(*this, row, reference);
+    const SphereCone<F> cone = cone_of<F>(row, reference);
     const Vec3<F> to_receiver = reference - position;
     const F distance_sq = length_sq(to_receiver);
     const F cos_theta_light = dot(ng, to_receiver) / sqrt(distance_sq);
@@ -91,27 +91,58 @@ class SphereLights {
   }
 
  private:
-  /// The cone of directions from a receiver to the sphere.
+  /// Which lanes are sampled so depends on receiver and sphere alone: samples and the densities of hits
+  /// agree.
   template <class F>
-  struct Cone {
-    Vec3<F> center, to_center;
-    F radius, sin_max_sq, one_minus_cos_max;
-    Mask<F> is_outside;
+  struct ByCosine {
+    SphereCone<F> cone;
+    CapOverHorizon<F> over_horizon;
+    ProjectedCap<F> cap;
+    Mask<F> lanes;
 
-    Cone(const SphereLights& lights, const Int<F>& row, const Vec3<F>& reference) {
-      const Int<F> at = row * Int<F>(4);
-      const float* field = lights.fields_.data();
-      center = gather_vec3<F>(field, at);
-      radius = gather(field + 3, at);
-      const Vec3<F> offset = center - reference;
-      const F distance_sq = length_sq(offset);
-      is_outside = distance_sq > radius * radius;
-      to_center = offset * (F(1) / sqrt(select(is_outside, distance_sq, F(1))));
-      sin_max_sq = select(is_outside, radius * radius / distance_sq, F(1));
-      // 1 - sqrt(1 - s) without cancellation for small s.
-      one_minus_cos_max = sin_max_sq / (F(1) + sqrt(max(F(1) - sin_max_sq, F(0))));
-    }
+    ByCosine(const SphereCone<F>& of_sphere, const Receiver<F>& receiver)
+        : cone(of_sphere),
+          over_horizon(cone.to_center, cone.sin_max_sq, lit_normal(receiver)),
+          cap(over_horizon),
+          lanes(mask_and(cone.is_outside, cap.is_accurate(), is_lit_from_one_side(receiver))) {}
   };
+
+  template <class F>
+  LightSample<F> sample_cone(const LightRequest<F>& request) const {
+    return light_sample_at(sample_position<F>(request.row, request.receiver.position, request.u), request);
+  }
+
+  template <class F>
+  static LightSample<F> sample_cosine(const ByCosine<F>& by_cosine, const LightRequest<F>& request,
+                                      const Mask<F>& m) {
+    const auto& [cone, over_horizon, cap, lanes] = by_cosine;
+    const Vec2<F> u{to_unit_float(request.u.x), to_unit_float(request.u.y)};
+    F pdf;
+    const CapDirection<F> seen = cap.sample(u, pdf);
+    const F sine_sq = seen.up * seen.up + seen.across * seen.across;
+    const Vec3<F> aside = over_horizon.up * seen.up + over_horizon.across * seen.across;
+    const Vec2<F> center = cone.at_center(sine_sq, seen.axis);
+    const Vec3<F> ng = aside * (center.x / sqrt(max(sine_sq, F(1e-37f)))) - cone.to_center * center.y;
+    const Vec3<F> position = cone.center + ng * cone.radius;
+    const Vec3<F> terms =
+        abs_each(cone.center) + abs_each(ng) * cone.radius + abs_each(position - request.receiver.position);
+    const F arriving = select(m, F(1) / pdf, F(0));
+    return light_sample_towards<F>(aside + cone.to_center * seen.axis,
+                                   position + ng * clearance<F>(ng, terms, F(0)),
+                                   {arriving, arriving, arriving}, pdf, m, request, piece_at(u));
+  }
+
+  template <class F>
+  SphereCone<F> cone_of(const Int<F>& row, const Vec3<F>& receiver) const {
+    const Int<F> at = row * Int<F>(4);
+    return {gather_vec3<F>(fields_.data(), at), gather(fields_.data() + 3, at), receiver};
+  }
+
+  /// On a grid of 4 x 4.
+  template <class F>
+  static Int<F> piece_at(const Vec2<F>& u) {
+    return to_int(u.y * F(4)) * Int<F>(4) + to_int(u.x * F(4));
+  }
 
   std::vector<float> fields_;  ///< Centre and radius: 4 a row.
 };

@@ -3,6 +3,7 @@
 
 #include "base/angles.h"
 #include "light/elliptic_cone.h"
+#include "light/piecewise_linear.h"
 
 #include <array>
 
@@ -25,14 +26,11 @@ class SphericalEllipse {
     sin_short_sq_ = short_sq * inv_short;
     cos_long_ = sqrt(s * inv_long);
     cos_short_ = sqrt(s * inv_short);
-    F sum(0);
-    for (std::size_t k = 0; k <= parts; ++k) {
-      const F q = sqrt(s * inv_long * F(cos_sq[k]) + s * inv_short * F(1 - cos_sq[k]));
-      weights_[k] = F(1) / (F(1) + q);
-      if (k > 0) sum = sum + F(0.5f) * (weights_[k - 1] + weights_[k]);
-    }
-    weight_sum_ = sum;
-    inv_measure_ = F(1) / (F(4 * width) * sum * sqrt(sin_long_sq_ * sin_short_sq_));
+    std::array<F, parts + 1> heights;
+    for (std::size_t k = 0; k <= parts; ++k)
+      heights[k] = F(1) / (F(1) + sqrt(s * inv_long * F(cos_sq[k]) + s * inv_short * F(1 - cos_sq[k])));
+    lines_ = PiecewiseLinear<F, parts>(heights);
+    inv_measure_ = F(1) / (F(4 * width) * lines_.integral() * sqrt(sin_long_sq_ * sin_short_sq_));
   }
 
   struct Sample {
@@ -47,21 +45,9 @@ class SphericalEllipse {
     const F ring = select(is_wide, x, y), ring_sq = ring * ring;
     const F eighth = F(0.5f) * abs(select(is_wide, y, x)) / max(abs(ring), F(tiny));
     // Of the quadrant, from psi = 0 on.
-    const F share = select(is_wide, eighth, F(1) - eighth);
-    const F target = share * weight_sum_;
-    F before(0), first = weights_[0], last = weights_[1], number(0), sum(0);
-    for (std::size_t k = 1; k < parts; ++k) {
-      sum = sum + F(0.5f) * (weights_[k - 1] + weights_[k]);
-      const Mask<F> is_beyond = target >= sum;
-      before = select(is_beyond, sum, before);
-      first = select(is_beyond, weights_[k], first);
-      last = select(is_beyond, weights_[k + 1], last);
-      number = select(is_beyond, F(float(k)), number);
-    }
-    const F rest = max(target - before, F(0)), rise = last - first;
-    const F within = min(F(2) * rest / (first + sqrt(first * first + F(2) * rest * rise)), F(1));
+    const auto drawn = lines_.sample(select(is_wide, eighth, F(1) - eighth));
     F sine, cosine;
-    sincos_half_turn((number + within) * F(width), sine, cosine);
+    sincos_half_turn(drawn.place * F(width), sine, cosine);
     const F cos_part = cos_long_ * cosine, sin_part = cos_short_ * sine,
             q = sqrt(cos_part * cos_part + sin_part * sin_part);
 
@@ -72,26 +58,19 @@ class SphericalEllipse {
         abs(ring) * sqrt((F(2) - depth) / (F(1) + q)) / ((F(1) - ring_sq) + ring_sq * q);  // over q
     const F p_x = cos_part * radius, p_y = sin_part * radius;
     return {cone_.from_axis({select(x < F(0), -p_x, p_x), select(y < F(0), -p_y, p_y)}),
-            (first + rise * within) * (F(1) + q) * inv_measure_};
+            drawn.height * (F(1) + q) * inv_measure_};
   }
 
   /// The density (1/sr) of the direction to a point of the unit disk.
   F pdf(const Vec2<F>& on_disk) const {
     const Vec2<F> p = cone_.to_axis(on_disk);
-    // The angle psi, in quarters of its quadrant.
     const F long_part = abs(p.x) * cos_short_, short_part = abs(p.y) * cos_long_;
     const F psi = half_turn_angle(short_part, long_part);
     const F inv_size = F(1) / max(sqrt(long_part * long_part + short_part * short_part), F(tiny));
     const F cosine = long_part * inv_size, sine = short_part * inv_size;
     const F cos_part = cos_long_ * cosine, sin_part = cos_short_ * sine,
             q = sqrt(cos_part * cos_part + sin_part * sin_part);
-    const F place = psi * F(1 / width);
-    F weight = weights_[0];
-    for (std::size_t k = 1; k <= parts; ++k) {
-      const F within = max(min(place - F(float(k - 1)), F(1)), F(0));
-      weight = weight + (weights_[k] - weights_[k - 1]) * within;
-    }
-    return weight * (F(1) + q) * inv_measure_;
+    return lines_.height(psi * F(1 / width)) * (F(1) + q) * inv_measure_;
   }
 
  private:
@@ -102,8 +81,8 @@ class SphericalEllipse {
 
   EllipticCone<F> cone_;
   F sin_long_sq_, sin_short_sq_, cos_long_, cos_short_;  ///< Of the half angles a and b.
-  std::array<F, parts + 1> weights_;                     ///< 1 / (1 + q), at the ends of the parts.
-  F weight_sum_, inv_measure_;
+  PiecewiseLinear<F, parts> lines_;                      ///< 1 / (1 + q)
+  F inv_measure_;
 };
 
 }  // namespace etendue

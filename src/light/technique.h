@@ -5,13 +5,12 @@
 
 namespace etendue {
 
-/// Of polygons (the facets of meshes, and rectangles) and disks. Spheres are sampled by solid angle, whatever
-/// is asked for.
+/// Of polygons (the facets of meshes, and rectangles), disks and spheres; these by solid angle, unless
+/// projected_solid_angle is asked for.
 ///   area: a point uniform on the surface, as course handouts have it.
 ///   solid_angle: a direction uniform among those in which the receiver sees the light.
 ///   projected_solid_angle: a direction with density in proportion to the cosine at the receiver; disks, and
-///     where light is scattered from both sides, or floats cannot (ProjectedPolygon::is_accurate), as
-///     solid_angle.
+///     where light is scattered from both sides, or floats cannot (is_accurate), as solid_angle.
 ///   automatic: as area where the light is small for its distance (is_small_from), else as solid_angle: of
 ///     several stratified samples projected_solid_angle leaves no less noise, and takes longer.
 ///   transformed_cosine: of polygons at glossy receivers also a direction with density in proportion to the

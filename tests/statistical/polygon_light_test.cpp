@@ -6,7 +6,8 @@
 // triangles; the back of a polygon is always seen as its front; the frame is not turned there; receivers that
 // scatter from both sides get the cosine's density; a fan's triangles are chosen with wrong shares; hits have
 // the density of another technique, or that without the lobe; u is not stretched back where a sample is by
-// the lobe; a lobe's density has the third power of the length; its x is not turned behind a polygon.
+// the lobe; a lobe's density has the third power of the length; its x is not turned behind a polygon; the distance
+// of a sample has no bound.
 #include "light/light.h"
 #include "polygon_cases.h"
 #include "stats/running.h"
@@ -278,6 +279,29 @@ TEST(PolygonLights, LeaveADiffuseReceiverThatSeesAllOfThemNoVariance) {
       EXPECT_NEAR(statistics.mean, exact, 1e-4 * exact);
       EXPECT_LT(std::sqrt(statistics.variance()), 1e-4 * exact);
     }
+}
+
+TEST(PolygonLights, EndShadowSegmentsOnThemselvesAlongTheirOwnPlane) {
+  // Far parts of a huge light close above the receiver: rounding hides on which side of its plane they are.
+  Scene scene;
+  constexpr float half = 1e5f;
+  scene.lights.add<RectangleLights>({1, 1, 1}, "ceiling", Vec3f{-half, -half, 1e-2f}, Vec3f{0, 2 * half, 0},
+                                    Vec3f{2 * half, 0, 0});
+  const Vec3f ns = normalize(Vec3f{1, 0, 0.3f});
+  const Receiver<float> receiver{{0, 0, 0}, ns, ns, front};
+  std::mt19937 random(10);
+  for (int i = 0; i < samples; ++i) {
+    // Along the sides.
+    const std::uint32_t edge = i % 2 == 0 ? 0 : 0xffffffff, other = random();
+    const Vec2<std::uint32_t> u =
+        i % 4 < 2 ? Vec2<std::uint32_t>{edge, other} : Vec2<std::uint32_t>{other, edge};
+    const LightSample<float> sample = scene.lights.sample<float>(0, 1, receiver, u, true, whole_light,
+                                                                 LightTechnique::projected_solid_angle);
+    if (!sample.is_there) continue;
+    EXPECT_LE(length(sample.end), 1.5f * half);
+    EXPECT_GT(dot(sample.end, sample.wi), 0);
+    EXPECT_TRUE(sample.pdf_solid_angle > 0 && std::isfinite(sample.pdf_solid_angle));
+  }
 }
 
 }  // namespace

@@ -9,7 +9,9 @@
 #include "geometry/surface_uv.h"
 #include "integrator/weights.h"
 #include "light/polygon_table.h"
+#include "light/projected_cap.h"
 #include "light/projected_polygon.h"
+#include "light/spherical_ellipse.h"
 #include "light/spherical_polygon.h"
 #include "lightsampler/light_importance.h"
 #include "lightsampler/light_sampler.h"
@@ -239,6 +241,23 @@ void projected_polygon(const Scene&, Packet& p) {
   const PolygonFan<F> fan = polygon_seen(p);
   const ProjectedPolygon<F> polygon(fan, Frame<F>(Vec3<F>{F(0), F(0), F(1)}));
   p.give(polygon.projected_solid_angle()), p.give(polygon.sample(p.square()));
+  p.give(select(polygon.is_accurate(), F(1), F(0)));
+}
+void spherical_ellipse(const Scene&, Packet& p) {
+  const Vec3<F> center = p.vec();
+  const SphericalEllipse<F> ellipse({center.x, center.y, center.z, p.real()});
+  const auto sample = ellipse.sample(p.square());
+  p.give(sample.on_disk), p.give(sample.pdf), p.give(ellipse.pdf(sample.on_disk));
+}
+void projected_cap(const Scene&, Packet& p) {
+  const Vec3<F> axis = p.vec(), normal = p.vec();
+  const CapOverHorizon<F> over_horizon(axis, p.real(), normal);
+  const ProjectedCap<F> cap(over_horizon);
+  F pdf;
+  const CapDirection<F> direction = cap.sample(p.square(), pdf);
+  const auto where = [&](const F& value) { return select(cap.is_accurate(), value, F(0)); };
+  p.give(where(direction.up)), p.give(where(direction.across)), p.give(where(direction.axis));
+  p.give(where(direction.cos_theta)), p.give(where(pdf));
 }
 
 template <class Sampler>
@@ -336,7 +355,9 @@ constexpr WideFunction functions[]{
     {"Lights::sample end", 6, 3, Words::floats, run<light_end>},
     {"Lights::pdf_solid_angle", 6, 1, Words::floats, run<light_pdf>},
     {"SphericalPolygon", 6, 4, Words::floats, run<spherical_polygon>},
-    {"ProjectedPolygon", 6, 4, Words::floats, run<projected_polygon>},
+    {"ProjectedPolygon", 6, 5, Words::floats, run<projected_polygon>},
+    {"SphericalEllipse", 6, 4, Words::floats, run<spherical_ellipse>},
+    {"ProjectedCap", 9, 5, Words::floats, run<projected_cap>},
     {"sample of a uniform light", 5, 7, Words::floats, run<lights_sample<UniformLights>>},
     {"sample of a light by power", 5, 7, Words::floats, run<lights_sample<PowerLights>>},
     {"importance of lights", 11, 5, Words::floats, run<light_importance>},
