@@ -141,6 +141,9 @@ std::map<std::string, Case> cases(std::uint32_t lights) {
   // Shares of a measure that is added up from angles up to 4096 times larger; where a sector begins it holds
   // so little that their rounding moves the azimuth far.
   all["ProjectedPolygon"] = {{word_below(2), real(-4, 4), real(-4, 4), real(0, 1.2f), real(0, 1)}, 400000, 1};
+  // Rounding decides at the bound: only that neighbours do not is tested.
+  all["ProjectedPolygon::is_accurate"] = {
+      {word_below(2), real(-4, 4), real(-4, 4), real(1.9f, 2)}, 1e9, 1, 1};
   // The square root at the edge of the disk.
   all["SphericalEllipse"] = {
       {real(-4, 4), real(-4, 4), magnitude(-2, 1), magnitude(-4, 0, {1}), unit()}, 2000, 1};

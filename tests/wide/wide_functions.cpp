@@ -241,7 +241,11 @@ void projected_polygon(const Scene&, Packet& p) {
   const PolygonFan<F> fan = polygon_seen(p);
   const ProjectedPolygon<F> polygon(fan, Frame<F>(Vec3<F>{F(0), F(0), F(1)}));
   p.give(polygon.projected_solid_angle()), p.give(polygon.sample(p.square()));
-  p.give(select(polygon.is_accurate(), F(1), F(0)));
+}
+void is_projected_accurate(const Scene&, Packet& p) {
+  const Frame<F> frame(p.vec());
+  const PolygonFan<F> fan = polygon_seen(p);
+  p.give(select(ProjectedPolygon<F>(fan, frame).is_accurate(), F(1), F(0)));
 }
 void spherical_ellipse(const Scene&, Packet& p) {
   const Vec3<F> center = p.vec();
@@ -355,7 +359,8 @@ constexpr WideFunction functions[]{
     {"Lights::sample end", 6, 3, Words::floats, run<light_end>},
     {"Lights::pdf_solid_angle", 6, 1, Words::floats, run<light_pdf>},
     {"SphericalPolygon", 6, 4, Words::floats, run<spherical_polygon>},
-    {"ProjectedPolygon", 6, 5, Words::floats, run<projected_polygon>},
+    {"ProjectedPolygon", 6, 4, Words::floats, run<projected_polygon>},
+    {"ProjectedPolygon::is_accurate", 7, 1, Words::floats, run<is_projected_accurate>},
     {"SphericalEllipse", 6, 4, Words::floats, run<spherical_ellipse>},
     {"ProjectedCap", 9, 5, Words::floats, run<projected_cap>},
     {"sample of a uniform light", 5, 7, Words::floats, run<lights_sample<UniformLights>>},
