@@ -13,6 +13,7 @@ namespace {
 using Type = Parameter::Type;
 
 const Parameter heuristic_parameter{"heuristic", Type::text, "balance", "", "balance or power (exponent 2)"};
+const Parameter power_parameter{"heuristic", Type::text, "power", "", "balance or power (exponent 2)"};
 
 /// McGill's integrator of the dialect nori, with numbers of samples of its own.
 const Plugin sampling_direct_plugin{
@@ -27,8 +28,8 @@ const Plugin sampling_direct_plugin{
      heuristic_parameter},
     {}};
 
-/// The keys that a row's integrator takes.
-enum class Keys { none, heuristic, sampling };
+/// The keys that a row's integrator takes: a heuristic, by default balance or power; numbers of samples.
+enum class Keys { none, heuristic, power, sampling };
 
 /// What a name stands for.
 struct Row {
@@ -62,10 +63,10 @@ PathRules direct_light_rules(Heuristic heuristic) { return PathRules::direct(bes
 
 constexpr Row table[]{
     {"path", "path",
-     "Paths with any number of bounces, with the best that has been measured of light samples.",
-     Keys::heuristic, path_rules},
+     "Paths with any number of bounces, with the best that has been measured of light samples.", Keys::power,
+     path_rules},
     {"direct_light", "direct_light", "Direct light, with the best that has been measured of light samples.",
-     Keys::heuristic, direct_light_rules},
+     Keys::power, direct_light_rules},
     {"light", "light",
      "Area sampling: each sample takes one point on one light. Its variance has no bound where a lit "
      "surface meets the light.",
@@ -101,6 +102,7 @@ Plugin plugin_of(const Row& row) {
   Plugin plugin{"integrator", std::string(row.name), std::string(row.meaning), {}, {}};
   if (row.meaning.empty()) plugin.meaning = fmt::format("Another name of {}.", row.canonical);
   if (row.keys == Keys::heuristic) plugin.parameters = {heuristic_parameter};
+  if (row.keys == Keys::power) plugin.parameters = {power_parameter};
   return plugin;
 }
 
@@ -253,14 +255,14 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
   plugin.name = description.type;
   const Parameters parameters(description, plugin, unread);
   return {row->canonical,
-          row->rules(row->keys == Keys::heuristic ? heuristic_of(parameters) : Heuristic::balance)};
+          row->rules(plugin.parameters.empty() ? Heuristic::balance : heuristic_of(parameters))};
 }
 
 IntegratorSettings integrator_from_name(std::string_view name) {
   if (is_unlit(name)) return unlit_from_name(name);
   const Row* row = find(name);
   if (!row) throw unknown_plugin("integrator", name, integrator_plugins());
-  return {row->canonical, row->rules(Heuristic::balance)};
+  return {row->canonical, row->rules(row->keys == Keys::power ? Heuristic::power : Heuristic::balance)};
 }
 
 IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std::string_view light_sampler) {

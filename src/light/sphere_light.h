@@ -20,7 +20,8 @@ namespace etendue {
 class SphereLights {
  public:
   std::int32_t add(const Sphere& sphere) {
-    fields_.insert(fields_.end(), {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius});
+    for (const float x : {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius})
+      fields_.push_back(x);
     return std::int32_t(fields_.size() / 4) - 1;
   }
 

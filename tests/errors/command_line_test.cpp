@@ -217,7 +217,7 @@ TEST_F(CommandLine, HowLightsAreSampledStandsInTheStats) {
   // The scene names no integrator.
   const nlohmann::json plain = stats_with({});
   expect(plain, "path", "tree", "auto", 1, 1, 4);
-  EXPECT_EQ(plain.at("heuristic"), "balance");
+  EXPECT_EQ(plain.at("heuristic"), "power");
   expect(stats_with({"--integrator", "direct_light"}), "direct_light", "tree", "auto", 4, 1, 4);
   expect(stats_with({"--integrator", "light"}), "light", "uniform", "area", 1, 1, 1);
   expect(stats_with({"--integrator", "direct"}), "direct", "", "", 0, 0, 0);
