@@ -105,7 +105,7 @@ struct Passes::Threads {
 
   /// False where it was stopped: nothing of the tile is in the film then.
   bool render_tile(const WorkUnit& tile, const std::function<bool()>& must_stop,
-                   std::vector<FilmStack>& films) {
+                   std::vector<FilmStack>& films, ReplicateLuminances* luminances) {
     if (must_stop()) return false;
     Worker& worker = workers.local();
     worker.block->cut_store = &cuts;
@@ -124,8 +124,11 @@ struct Passes::Threads {
     const Color<double>* means = worker.means.data();
     for (FilmStack& film : films)
       for (int y = tile.pixels.y_begin; y < tile.pixels.y_end; ++y)
-        for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, means += tile.replicates)
-          film.add(x, y, {means, std::size_t(tile.replicates)});
+        for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, means += tile.replicates) {
+          const std::span<const Color<double>> of_pixel(means, std::size_t(tile.replicates));
+          film.add(x, y, of_pixel);
+          if (luminances && &film == &films.front()) luminances->add(x, y, tile.first_replicate, of_pixel);
+        }
     worker.counts.samples += tile.samples_per_pixel() * tile.pixels.width() * tile.pixels.height();
     worker.counts += worker.block->counts;
     worker.invalid.add(worker.invalid_of_tile);
@@ -185,7 +188,7 @@ double Passes::measure_pace() {
   return seconds_since(start) / measured * samples / threads.count;
 }
 
-PassResult Passes::render(std::vector<FilmStack>& films, int end) {
+PassResult Passes::render(std::vector<FilmStack>& films, int end, ReplicateLuminances* luminances) {
   Threads& threads = *threads_;
   const FilmStack& film = films.front();
   const int first = int(film.last());
@@ -203,7 +206,7 @@ PassResult Passes::render(std::vector<FilmStack>& films, int end) {
   std::mutex progress_mutex;
   for (FilmStack& each : films) each.begin_pass(std::uint64_t(end));
   const auto render_tile = [&](std::size_t k) {
-    if (!threads.render_tile(tiles[k], must_stop, films)) return;
+    if (!threads.render_tile(tiles[k], must_stop, films, luminances)) return;
     watch.count_tile();
     if (!threads.progress) return;
     const std::lock_guard lock(progress_mutex);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/film.h"
+#include "film/replicate_luminances.h"
 #include "integrator/block_counts.h"
 #include "integrator/integrator.h"
 #include "integrator/layer_rule.h"
@@ -45,6 +46,7 @@ struct RenderResult {
   Film film;  ///< Where interrupted, of `replicates` replicates; of a fragment, some pixels have count 0.
   std::vector<Film> layers{};  ///< As the settings list them, of the same pixels and replicates.
   int replicates = 0;
+  ReplicateLuminances luminances{};  ///< Of the image, whose first `replicates` count.
   RenderCounts counts{};
   InvalidSamples invalid{};
   double seconds = 0;

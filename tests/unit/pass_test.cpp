@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <random>
 #include <tuple>
 
@@ -48,9 +49,10 @@ TEST(Passes, NoBitDependsOnHowTheyAreCut) {
         std::vector<FilmStack> stack{FilmStack(37, 37)};
         Passes passes(loaded.scene, settings, no_progress, nullptr);
         InvalidSamples invalid;
+        ReplicateLuminances luminances(37, 37, 13);
         std::int64_t samples = 0;
         for (const int end : ends) {
-          const PassResult pass = passes.render(stack, end);
+          const PassResult pass = passes.render(stack, end, &luminances);
           EXPECT_TRUE(pass.is_complete);
           invalid.add(pass.invalid);
           samples += pass.counts.samples;
@@ -59,6 +61,13 @@ TEST(Passes, NoBitDependsOnHowTheyAreCut) {
         for (int y = 0; y < 37; ++y)
           for (int x = 0; x < 37; ++x)
             ASSERT_EQ(stack.front().pixel(x, y), expected.film.at(x, y)) << x << ' ' << y;
+        for (int y = 0; y < 37; ++y)
+          for (int x = 0; x < 37; ++x) {
+            const std::span<const float> kept = luminances.at(x, y, 13);
+            ASSERT_TRUE(std::ranges::equal(kept, expected.luminances.at(x, y, 13))) << x << ' ' << y;
+            ASSERT_NEAR(std::accumulate(kept.begin(), kept.end(), 0.0) / 13,
+                        luminance(expected.film.at(x, y).mean), 1e-6 * *std::ranges::max_element(kept));
+          }
         EXPECT_EQ(invalid.count(), expected.invalid.count());
         for (std::size_t i = 0; i < invalid.first().size(); ++i)
           EXPECT_TRUE(invalid.first()[i] == expected.invalid.first()[i]) << i;

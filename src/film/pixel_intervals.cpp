@@ -1,0 +1,153 @@
+#include "film/pixel_intervals.h"
+
+#include "stats/quantile.h"
+#include "stats/running.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace etendue {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr int reach = 2;  ///< Pixels to each side.
+constexpr int window = (2 * reach + 1) * (2 * reach + 1);
+
+/// Standard error of the mean luminance.
+double luminance_error(const PixelStatistics& pixel, std::span<const float> replicates) {
+  if (replicates.empty()) return luminance(standard_error(pixel));
+  double mean = 0, m2 = 0;
+  for (const float value : replicates) mean += value;
+  mean /= double(replicates.size());
+  for (const float value : replicates) m2 += (value - mean) * (value - mean);
+  return std::sqrt(m2 / double(pixel.count - 1) / double(pixel.count));
+}
+
+/// What neighbours look at, one row below the other with a margin, where nothing is alike.
+struct Planes {
+  Planes(const Film& film, const ReplicateLuminances& luminances)
+      : stride(film.width() + 2 * reach),
+        mean(std::size_t(stride) * std::size_t(film.height() + 2 * reach), nan),
+        error(mean.size(), 0.0f) {
+    for (int y = 0; y < film.height(); ++y)
+      for (int x = 0; x < film.width(); ++x) {
+        const PixelStatistics& pixel = film.at(x, y);
+        if (pixel.count < 2) continue;
+        const std::size_t i = at(x, y);
+        mean[i] = float(luminance(pixel.mean));
+        error[i] = float(luminance_error(pixel, luminances.at(x, y, pixel.count)));
+        replicates = std::max(replicates, pixel.count);
+        largest = std::max({largest, float(pixel.mean.r + std::sqrt(pixel.m2.r)),
+                            float(pixel.mean.g + std::sqrt(pixel.m2.g)),
+                            float(pixel.mean.b + std::sqrt(pixel.m2.b))});
+      }
+  }
+  std::size_t at(int x, int y) const {
+    return std::size_t(y + reach) * std::size_t(stride) + std::size_t(x + reach);
+  }
+
+  int stride;
+  std::vector<float> mean, error;  ///< Of luminance; not a number where there is no error.
+  std::int64_t replicates = 2;
+  float largest = 0;  ///< No channel of a replicate is above it.
+};
+
+constexpr float alike_within = 3;
+
+/// The sum of squared errors of luminance over the alike pixels around those of a row, themselves included.
+struct Pool {
+  explicit Pool(int width) : count(std::size_t(width)), error_sq(count.size()) {}
+  void add(const Planes& planes, int y, int dx, int dy) {
+    const std::size_t here = planes.at(0, y), there = planes.at(dx, y + dy);
+    const float *mean = &planes.mean[here], *error = &planes.error[here];
+    const float *other_mean = &planes.mean[there], *other_error = &planes.error[there];
+    float *to_count = count.data(), *to_error_sq = error_sq.data();
+    for (std::size_t x = 0; x < count.size(); ++x) {
+      const float noisier = error[x] > other_error[x] ? error[x] : other_error[x];
+      const float is_alike = std::abs(mean[x] - other_mean[x]) <= alike_within * noisier ? 1.0f : 0.0f;
+      to_count[x] += is_alike;
+      to_error_sq[x] += is_alike * other_error[x] * other_error[x];
+    }
+  }
+  float error(std::size_t x) const { return std::sqrt(error_sq[x] / count[x]); }
+  std::vector<float> count, error_sq;
+};
+
+/// The root of the mean squared error of each channel over the alike pixels within `side` of one.
+Color<double> pooled_error(const Planes& planes, const Film& film, int x, int y, int side) {
+  Color<double> sum{0, 0, 0};
+  double count = 0;
+  const std::size_t here = planes.at(x, y);
+  for (int dy = -side; dy <= side; ++dy)
+    for (int dx = -side; dx <= side; ++dx) {
+      const std::size_t there = planes.at(x + dx, y + dy);
+      const float noisier = std::max(planes.error[here], planes.error[there]);
+      if (!(std::abs(planes.mean[here] - planes.mean[there]) <= alike_within * noisier)) continue;
+      const PixelStatistics& pixel = film.at(x + dx, y + dy);
+      sum = sum + pixel.m2 * (1 / (double(pixel.count) * double(pixel.count - 1)));
+      ++count;
+    }
+  return {std::sqrt(sum.r / count), std::sqrt(sum.g / count), std::sqrt(sum.b / count)};
+}
+
+}  // namespace
+
+std::vector<PixelInterval> pixel_intervals(const Film& film, const ReplicateLuminances& luminances,
+                                           double confidence) {
+  if (!(confidence > 0 && confidence < 1))
+    throw std::domain_error("pixel_intervals: the confidence must lie in (0, 1)");
+  constexpr float own_holds_from = 0.75f, near_holds_from = 0.5f;
+  const Planes planes(film, luminances);
+  std::array<float, window + 1> quantiles{};  // By the number of pixels in the pool.
+  for (int pixels = 1; pixels <= window; ++pixels)
+    quantiles[std::size_t(pixels)] =
+        float(student_t_quantile((1 + confidence) / 2, double(pixels * (planes.replicates - 1))));
+  std::vector<PixelInterval> intervals(std::size_t(film.width()) * std::size_t(film.height()));
+  for (int y = 0; y < film.height(); ++y) {
+    Pool near(film.width());
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) near.add(planes, y, dx, dy);
+    Pool wide = near;
+    for (int dy = -reach; dy <= reach; ++dy)
+      for (int dx = -reach; dx <= reach; ++dx)
+        if (std::max(std::abs(dx), std::abs(dy)) > 1) wide.add(planes, y, dx, dy);
+    for (std::size_t x = 0; x < std::size_t(film.width()); ++x) {
+      const std::size_t at = planes.at(int(x), y);
+      PixelInterval& interval = intervals[std::size_t(y) * std::size_t(film.width()) + x];
+      if (std::isnan(planes.mean[at])) {
+        interval = {{nan, nan, nan}, nan, nan, IntervalRule::unknown};
+        continue;
+      }
+      const float own = planes.error[at], near_error = near.error(x), wide_error = wide.error(x);
+      interval.luminance_error = own;
+      if (planes.mean[at] == 0 && wide_error == 0) {
+        const float most =
+            float(-std::log(1 - confidence)) * planes.largest / (float(planes.replicates) * wide.count[x]);
+        interval = {{most, most, most}, most, own, IntervalRule::black};
+        continue;
+      }
+      interval.rule = near_error < near_holds_from * wide_error ? IntervalRule::rare_events
+                      : own < own_holds_from * near_error       ? IntervalRule::neighbours
+                                                                : IntervalRule::student_t;
+      const Color<double> error = standard_error(film.at(int(x), y));
+      const Color<float> of_own = quantiles[1] * Color<float>{float(error.r), float(error.g), float(error.b)};
+      interval.half_width = of_own;
+      interval.luminance_half_width = quantiles[1] * own;
+      if (interval.rule == IntervalRule::student_t) continue;
+      const bool is_near = interval.rule == IntervalRule::neighbours;
+      const Pool& pool = is_near ? near : wide;
+      const float quantile = quantiles[std::size_t(pool.count[x])];
+      const Color<double> pooled = pooled_error(planes, film, int(x), y, is_near ? 1 : reach);
+      interval.half_width = {std::max(of_own.r, quantile * float(pooled.r)),
+                             std::max(of_own.g, quantile * float(pooled.g)),
+                             std::max(of_own.b, quantile * float(pooled.b))};
+      interval.luminance_half_width = std::max(interval.luminance_half_width, quantile * pool.error(x));
+    }
+  }
+  return intervals;
+}
+
+}  // namespace etendue
