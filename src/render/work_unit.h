@@ -1,18 +1,12 @@
 // What a render is made of: pixels, and which samples of each.
 #pragma once
 
+#include "film/pixel_rectangle.h"
+
 #include <cstdint>
 #include <vector>
 
 namespace etendue {
-
-/// A rectangle of pixels; the ends are exclusive.
-struct PixelRectangle {
-  int x_begin, y_begin, x_end, y_end;
-
-  int width() const { return x_end - x_begin; }
-  int height() const { return y_end - y_begin; }
-};
 
 /// Replicates [first_replicate, first_replicate + replicates) of some pixels. No bit of them depends on how
 /// an image is cut into units.
