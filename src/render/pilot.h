@@ -1,0 +1,40 @@
+// How many samples an image needs, told by renders that are thrown away.
+//
+// Who looks at samples to decide when to stop, and keeps them, biases the image: it stops where rare light
+// has not been met yet (Kirk, Arvo 1991, "Unbiased sampling techniques for image synthesis"). So pilots with
+// random numbers of their own decide, and fresh samples make the image.
+#pragma once
+
+#include "render/render.h"
+
+namespace etendue {
+
+/// A share of the pixels is to have an interval of half-width at most `relative` times the larger of the
+/// pixel and 1 % of the image's mean, by luminance.
+struct ErrorGoal {
+  double relative;           ///< Positive.
+  double share = 0.99;       ///< In (0, 1].
+  double confidence = 0.95;  ///< Of the intervals.
+};
+
+struct Pilot {
+  int samples_per_pixel = 0;  ///< What the image needs; a multiple of 8, at least 16.
+  std::int64_t samples = 0;   ///< That the pilots took, of all pixels.
+  double seconds = 0;
+  bool is_interrupted = false;  ///< Then it tells nothing.
+};
+
+/// Share of the rendered pixels that reach `goal.relative`.
+double share_within(const RenderResult& result, const ErrorGoal& goal);
+
+/// From pilots of 16 samples a pixel and more, the last with at least an eighth of what is needed; errors are
+/// taken to fall with the root of the samples. `settings` say all but the number of samples.
+/// \param most samples a pixel; no more are asked for
+Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, const ErrorGoal& goal, int most,
+                        const StopRequest* stop = nullptr);
+
+/// What can be rendered in `seconds` > 0, the pilot's own time taken off; at least 16.
+Pilot samples_for_time(const Scene& scene, const RenderSettings& settings, double seconds, int most,
+                       const StopRequest* stop = nullptr);
+
+}  // namespace etendue
