@@ -1,5 +1,6 @@
 #include "base/temporary_file.h"
 #include "commands.h"
+#include "error_report.h"
 #include "image/image_file.h"
 #include "interrupt.h"
 #include "messages.h"
@@ -9,6 +10,7 @@
 #include "render/thread_limit.h"
 #include "render_outputs.h"
 #include "replay.h"
+#include "sample_count.h"
 #include "scenefile/nori_xml.h"
 #include "scenefile/scene_files.h"
 
@@ -67,6 +69,8 @@ int run(const RenderOptions& options) {
   settings.integrator = settled(
       integrator_for(options.integrator, loaded, description.dialect, loaded.warnings), loaded.scene.lights);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
+  const std::vector<Region> regions =
+      regions_of(options.regions, loaded.scene.camera.width_px, loaded.scene.camera.height_px);
   check_settings(settings);
   const LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};
   const std::vector<Finding> findings = lint(subject, brief);
@@ -90,14 +94,17 @@ int run(const RenderOptions& options) {
   }
   const std::uint64_t hash = scene_hash(description);
   catch_signals(LaterSignals::hurry);
+  const std::optional<Pilot> pilot = settle_samples(options, loaded.scene, settings);
   announce(options, description, loaded, settings);
-  const Rendering rendering{options, description,
-                            loaded,  settings,
-                            hash,    render_with_progress(loaded.scene, settings, options.is_quiet)};
+  RenderResult rendered = render_with_progress(loaded.scene, settings, options.is_quiet);
+  ImageErrors errors = errors_of(rendered, regions, options.confidence);
+  const Rendering rendering{options,           description, loaded, settings, hash, std::move(rendered),
+                            std::move(errors), pilot};
   const RenderResult& result = rendering.result;
   const WrittenFiles written = write_outputs(rendering);
   report_invalid(rendering);
   report_dark(rendering, subject);
+  report_errors(rendering);
   say_what_was_saved(rendering, written);
   if (!options.is_quiet)
     say("{} in {}: {:.1f} million samples a second\n", result.is_interrupted ? "interrupted" : "done",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
 #include <string_view>
 
@@ -55,6 +56,18 @@ IntegratorSettings integrator_named(const std::string& name, const LoadedScene& 
   return own;
 }
 
+enum class Ends { excluded, included };
+
+/// For CLI11's check().
+std::function<std::string(const std::string&)> share(Ends upper) {
+  return [upper](const std::string& text) {
+    double share = 0;
+    const bool is_share = CLI::detail::lexical_cast(text, share) && share > 0 &&
+                          (upper == Ends::included ? share <= 1 : share < 1);
+    return is_share ? std::string() : fmt::format("'{}' is not a number between 0 and 1", text);
+  };
+}
+
 }  // namespace
 
 void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
@@ -84,8 +97,9 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
 void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("SCENE", options.scene_file, "Scene file (XML of the Nori family)")->required();
   command
-      .add_option("-o,--output", options.outputs,
-                  "Image to write, .exr (radiance and its standard error) or .png (sRGB); may be repeated")
+      .add_option(
+          "-o,--output", options.outputs,
+          "Image to write, .exr (radiance, its standard error and interval) or .png (sRGB); may be repeated")
       ->allow_extra_args(false);
   command.add_option("--sampler", options.sampler, "Instead of the file's: independent or sobol");
   add_integrator_options(command, options.integrator);
@@ -101,6 +115,37 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       "--replicates-by", options.replicates_by,
       "block: consecutive samples of one sequence, for the least error; scrambling: a sequence "
       "each, for intervals that are exact rather than careful [block]");
+  command
+      .add_option("--confidence", options.confidence,
+                  "How often intervals are to hold the true value, between 0 and 1 [0.95]")
+      ->check(share(Ends::excluded));
+  CLI::Option* spp = command.get_option("--spp");
+  CLI::Option* replicates = command.get_option("--replicates");
+  CLI::Option* error =
+      command
+          .add_option(
+              "--error", options.relative_error,
+              "As many samples as it takes for intervals to reach no farther than this share of a pixel "
+              "(or of 1 % of the image's mean, where that is more): 0.01. Pilots tell; --spp is the most")
+          ->check(CLI::PositiveNumber)
+          ->excludes(replicates);
+  command
+      .add_option("--of", options.share_within, "In what share of the pixels --error is to be kept [0.99]")
+      ->check(share(Ends::included))
+      ->needs(error);
+  command
+      .add_option(
+          "--time", options.seconds,
+          "As many samples as can be rendered in so many seconds, pilots counted, reading the scene not")
+      ->check(CLI::PositiveNumber)
+      ->excludes(replicates)
+      ->excludes(spp)
+      ->excludes(error);
+  command
+      .add_option("--region", options.regions,
+                  "NAME=X0,Y0,X1,Y1: say mean, error and checks of these pixels (X1 and Y1 are not of them) "
+                  "too, in words and in --stats; may be repeated")
+      ->allow_extra_args(false);
   add_run_options(command, options.run);
   command.add_option("--stats", options.stats_file, "JSON file for settings, times and counts");
   command.add_option("--replay", options.replay,

@@ -15,21 +15,24 @@ namespace etendue::app {
 
 namespace {
 
-Image to_image(const Film& film) {
+Image to_image(const Film& film, const std::vector<PixelInterval>& intervals) {
   Image image;
   image.width = film.width();
   image.height = film.height();
-  const auto size = std::size_t(film.width()) * std::size_t(film.height());
-  for (const char* name : {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"})
-    image.channels.push_back({name, std::vector<float>(size)});
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x) {
-      const PixelStatistics& pixel = film.at(x, y);
-      const Color<double> error = standard_error(pixel);
-      const std::size_t at = std::size_t(y) * std::size_t(film.width()) + std::size_t(x);
-      const std::array values{pixel.mean.r, pixel.mean.g, pixel.mean.b, error.r, error.g, error.b};
-      for (std::size_t c = 0; c < values.size(); ++c) image.channels[c].values[at] = float(values[c]);
-    }
+  for (const char* name : {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B", "stderr.Y", "interval.R",
+                           "interval.G", "interval.B", "interval.Y", "interval.trust"})
+    image.channels.push_back({name, std::vector<float>(intervals.size())});
+  for (std::size_t at = 0; at < intervals.size(); ++at) {
+    const PixelStatistics& pixel =
+        film.at(int(at % std::size_t(film.width())), int(at / std::size_t(film.width())));
+    const Color<double> error = standard_error(pixel);
+    const PixelInterval& interval = intervals[at];
+    const std::array values{
+        float(pixel.mean.r),   float(pixel.mean.g),   float(pixel.mean.b),           float(error.r),
+        float(error.g),        float(error.b),        interval.luminance_error,      interval.half_width.r,
+        interval.half_width.g, interval.half_width.b, interval.luminance_half_width, float(interval.rule)};
+    for (std::size_t c = 0; c < values.size(); ++c) image.channels[c].values[at] = values[c];
+  }
   return image;
 }
 
@@ -41,6 +44,7 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendering& rende
       {"seed", std::to_string(settings.seed)},
       {"replicates", fmt::format("0-{}", rendering.result.replicates - 1)},
       {"replicatesBy", std::string(replicates_by_name(settings.replicates_by))},
+      {"confidence", fmt::format("{}", rendering.options.confidence)},
       {"samplesPerPixel", std::to_string(rendering.samples_per_pixel())},
       {"integrator", std::string(settings.integrator.name)},
       {"isa", std::string(isa_name(settings.isa))},
@@ -140,7 +144,7 @@ WrittenFiles write_outputs(const Rendering& rendering) {
     images.push_back({output, destination_of(output, result)});
   const bool is_partial = std::any_of(images.begin(), images.end(), went_elsewhere);
   if (rendering.pixels_rendered() > 0) {
-    Image image = to_image(result.film);
+    Image image = to_image(result.film, rendering.errors.intervals);
     image.metadata = metadata(rendering);
     for (const WrittenFile& file : images)
       write(file, written.images, [&](const std::string& name) {

@@ -1,5 +1,6 @@
 #include "render_report.h"
 
+#include "error_report.h"
 #include "messages.h"
 #include "render/replay.h"
 
@@ -144,6 +145,7 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   json["invalid_samples"] = result.invalid.count();
   json["mean"] = {mean.r, mean.g, mean.b};
   json["mean_luminance"] = luminance(mean);
+  add_error_stats(rendering, json);
   json["triangles"] = loaded.scene.geometry.triangle_count();
   json["lights"] = loaded.scene.lights.count();
   json["peak_memory_bytes"] = peak_memory_bytes();

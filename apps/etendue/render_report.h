@@ -1,7 +1,9 @@
 // What a render says of itself: the JSON of --stats, warnings, bad samples.
 #pragma once
 
+#include "image_errors.h"
 #include "lint/lint.h"
+#include "render/pilot.h"
 #include "render_options.h"
 #include "scenefile/scene_desc.h"
 
@@ -19,6 +21,8 @@ struct Rendering {
   const RenderSettings& settings;
   std::uint64_t scene_hash;
   RenderResult result;
+  ImageErrors errors;
+  std::optional<Pilot> pilot;  ///< Where it settled the number of samples.
 
   int samples_per_pixel() const { return result.replicates * settings.samples_per_replicate(); }
   std::int64_t pixels() const { return std::int64_t(result.film.width()) * result.film.height(); }

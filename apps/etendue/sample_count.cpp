@@ -1,0 +1,34 @@
+#include "sample_count.h"
+
+#include "interrupt.h"
+#include "messages.h"
+
+#include <algorithm>
+
+namespace etendue::app {
+
+std::optional<ErrorGoal> error_goal(const RenderOptions& options) {
+  if (!options.relative_error) return std::nullopt;
+  return ErrorGoal{*options.relative_error, options.share_within, options.confidence};
+}
+
+std::optional<Pilot> settle_samples(const RenderOptions& options, const Scene& scene,
+                                    RenderSettings& settings) {
+  const std::optional<ErrorGoal> goal = error_goal(options);
+  if (!goal && !options.seconds) return std::nullopt;
+  // Samples of a pixel, and those of one vertex of each, are numbered by 32 bits.
+  const PathRules* rules = settings.integrator.path_rules();
+  const std::int64_t numbers = (std::int64_t(1) << 30) / (rules ? rules->most_samples() : 1);
+  const int most = int(std::min<std::int64_t>(numbers, options.samples_per_pixel.value_or(1 << 16)));
+  const Pilot pilot = goal ? samples_for_error(scene, settings, *goal, most, &stop_request)
+                           : samples_for_time(scene, settings, *options.seconds, most, &stop_request);
+  settings.samples_per_pixel = std::max(pilot.samples_per_pixel, 16);
+  if (options.is_quiet || pilot.is_interrupted) return pilot;
+  say("pilots of {:.1f} s ask for {} samples a pixel{}\n", pilot.seconds, settings.samples_per_pixel,
+      goal && settings.samples_per_pixel > most - 8
+          ? ", the most there may be: what was asked for is not reached"
+          : "");
+  return pilot;
+}
+
+}  // namespace etendue::app
