@@ -175,8 +175,10 @@ void report_invalid(const Rendering& rendering) {
         sample.index, sample.radiance.r, sample.radiance.g, sample.radiance.b);
   if (const std::string object = object_of_invalid(rendering); !object.empty())
     say("the first went wrong at {}\n", object);
+  RenderOptions options = rendering.options;
+  if (rendering.pilot) options.samples_per_pixel = rendering.settings.samples_per_pixel;
   say("to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
-      replay_command(rendering.options, result.invalid.first().front()));
+      replay_command(options, result.invalid.first().front()));
 }
 
 void report_dark(const Rendering& rendering, const LintSubject& subject) {

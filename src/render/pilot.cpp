@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace etendue {
@@ -32,7 +33,7 @@ RenderResult render_pilot(const Scene& scene, const RenderSettings& settings, in
   return result;
 }
 
-/// Of each rendered pixel: half-width over what the goal allows.
+/// Of each rendered pixel: half-width over what the goal allows; more than 1 in an image that met no light.
 std::vector<double> over_goal(const RenderResult& result, const ErrorGoal& goal) {
   const std::vector<PixelInterval> intervals =
       pixel_intervals(result.film, result.luminances, goal.confidence);
@@ -44,7 +45,11 @@ std::vector<double> over_goal(const RenderResult& result, const ErrorGoal& goal)
           intervals[std::size_t(y) * std::size_t(result.film.width()) + std::size_t(x)];
       if (interval.rule == IntervalRule::unknown) continue;
       const double allowed = goal.relative * std::max(luminance(result.film.at(x, y).mean), floor);
-      ratios.push_back(interval.luminance_half_width == 0 ? 0 : interval.luminance_half_width / allowed);
+      const bool is_reached =
+          floor > 0 && (interval.rule == IntervalRule::black || interval.luminance_half_width == 0);
+      ratios.push_back(is_reached  ? 0
+                       : floor > 0 ? interval.luminance_half_width / allowed
+                                   : std::numeric_limits<double>::infinity());
     }
   return ratios;
 }

@@ -9,8 +9,9 @@
 
 namespace etendue {
 
-/// A share of the pixels is to have an interval of half-width at most `relative` times the larger of the
-/// pixel and 1 % of the image's mean, by luminance.
+/// A share of the pixels is to have an interval of half-width at most `relative` times the larger of the pixel
+/// and 1 % of the image's mean, by luminance. Pixels that met no light, such as the background, count as
+/// within.
 struct ErrorGoal {
   double relative;           ///< Positive.
   double share = 0.99;       ///< In (0, 1].
