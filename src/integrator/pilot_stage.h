@@ -4,6 +4,7 @@
 #include "base/frame.h"
 #include "integrator/camera_stage.h"
 #include "integrator/columns.h"
+#include "integrator/pilot_shadow_rays.h"
 #include "integrator/sample_block.h"
 #include "integrator/vertex.h"
 #include "lightsampler/light_sampler.h"
@@ -90,13 +91,17 @@ LightCut make_cut(const Scene& scene, const LightTree& tree, std::int32_t tile, 
         is_all_diffuse &&
         !any(mask_and(is_lit[std::size_t(p)], mask_not(scene.materials.is_diffuse<F>(vertex.material))));
   }
+  const auto see = [&](int p, const LightChoice<F>& choice, const UInt<F>& u_place) {
+    const auto at = std::size_t(p);
+    return see_lights<F>(scene, lobes[at].vertex, receivers[at], is_lit[at], choice, u_place);
+  };
   if (is_all_diffuse) {
-    return make_light_cut<F>(tree, receivers.data(), is_lit.data(),
-                             [](int, const Importance<F>&) { return F(1); });
+    return make_light_cut<F>(
+        tree, receivers.data(), is_lit.data(), [](int, const Importance<F>&) { return F(1); }, see);
   }
-  return make_light_cut<F>(tree, receivers.data(), is_lit.data(), [&](int p, const Importance<F>& of) {
-    return lobes[std::size_t(p)].density_at_most(scene, of);
-  });
+  return make_light_cut<F>(
+      tree, receivers.data(), is_lit.data(),
+      [&](int p, const Importance<F>& of) { return lobes[std::size_t(p)].density_at_most(scene, of); }, see);
 }
 
 /// Cuts for the tiles of the block's samples, where lights are chosen by a tree. In a medium light scatters

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace etendue {
@@ -17,11 +18,25 @@ struct LightCut {
   static constexpr int most_clusters = 256;
   static constexpr int guide_shift = 24, guides = 1 << (32 - guide_shift);
 
-  /// Clusters from left to right: cumulative shares (light/inversion_table.h), and the places of the tree
-  /// where they begin. Those that are not needed hold no place.
-  std::array<std::int32_t, most_clusters + 1> shares, places;
-  std::array<std::int32_t, guides> guide;  ///< For the high bits of a number, where to look for its cluster.
+  /// Clusters from left to right: the places of the tree where they begin. Those that are not needed hold no
+  /// place.
+  std::array<std::int32_t, most_clusters + 1> places;
+  /// Cumulative shares (light/inversion_table.h), first of the clusters that are seen, then of the others:
+  /// each change between what counts and what does not costs noise.
+  std::array<std::int32_t, most_clusters + 1> shares;
+  std::array<std::int32_t, most_clusters> clusters;   ///< Whose share it is.
+  std::array<std::int32_t, most_clusters> positions;  ///< The inverse: where a cluster has its share.
+  std::array<std::int32_t, guides> guide;  ///< For the high bits of a number, where to look for its share.
 };
+
+/// What a cut is made of.
+struct CutCluster {
+  std::int32_t begin;  ///< The first of its places.
+  double weight;       ///< How often it is chosen, relative to others; 0: never.
+  double visibility;   ///< From the pilots, out of 1.
+};
+/// \param clusters from left to right, up to LightCut::most_clusters \param facets of the tree
+LightCut light_cut_of(std::span<const CutCluster> clusters, std::int32_t facets);
 
 /// The cuts of a render that have been made, shared by its threads; in a large image not all are kept.
 class LightCutStore {
@@ -47,7 +62,7 @@ class LightCutStore {
   }
 
  private:
-  static constexpr int most_kept = 1 << 16;  ///< 200 MB.
+  static constexpr int most_kept = 1 << 16;  ///< 340 MB.
   std::vector<std::atomic<const LightCut*>> cuts_;
 };
 

@@ -62,7 +62,8 @@ class LightCuts {
     const F within = min((to_float(wanted - begin_share) + to_unit_float(noise)) / size, F(0x1.fffffep-1f));
     // Low bits that the shares of clusters do not leave are made from those that there are.
     const UInt<F> u_left = (as_uint(to_int(within * F(0x1p24f))) << 8) | (noise >> 24);
-    return choose_by_power<F>(tree, gather(places, at), gather(places, at + Int<F>(1)), u_left,
+    const Int<F> cluster = first + gather(cuts_[0].clusters.data(), at);
+    return choose_by_power<F>(tree, gather(places, cluster), gather(places, cluster + Int<F>(1)), u_left,
                               pmf * (size * F(1.0f / float(inversion_whole))));
   }
 
@@ -71,14 +72,16 @@ class LightCuts {
   F pmf(const LightTree& tree, const Int<F>& slot, const Int<F>& place) const {
     using I = Int<F>;
     const I first = slot * I(cut_words);
-    I index(0);
+    I cluster(0);
     for (int step = most_clusters / 2; step > 0; step /= 2) {
-      const I probe = index + I(step);
-      index = select(less(place, gather(cuts_[0].places.data(), first + probe)), index, probe);
+      const I probe = cluster + I(step);
+      cluster = select(less(place, gather(cuts_[0].places.data(), first + probe)), cluster, probe);
     }
-    const I begin = gather(cuts_[0].places.data(), first + index),
-            end = gather(cuts_[0].places.data(), first + index + I(1));
-    return inversion_pmf<F>(cuts_[0].shares.data(), first, index) * pmf_by_power<F>(tree, begin, end, place);
+    const I begin = gather(cuts_[0].places.data(), first + cluster),
+            end = gather(cuts_[0].places.data(), first + cluster + I(1)),
+            position = gather(cuts_[0].positions.data(), first + cluster);
+    return inversion_pmf<F>(cuts_[0].shares.data(), first, position) *
+           pmf_by_power<F>(tree, begin, end, place);
   }
 
  private:

@@ -5,7 +5,8 @@
 // Seen to fail when: the power sampler states the pmf of the next light, or takes powers without the lights'
 // areas; its least share is left out; the number left over is not stretched; `all` states the pmf 1/n; a walk
 // states the pmf of the sibling; a cut states that of its neighbour, or of another tile; a walk or a cut does
-// not stretch the number; the pmf within a leaf is left out.
+// not stretch the number; the pmf within a leaf is left out; a cut takes the share at a cluster's own
+// position.
 #include "lightsampler/light_sampler.h"
 
 #include "lightsampler/make_light_cut.h"
@@ -257,8 +258,12 @@ TEST_P(LightsByTree, ACutChoosesFacetsWithTheirProbability) {
       pilots.push_back(cases[k % cases.size()].receiver);
       is_lit[k] = tile > 0 && k % 3 != std::size_t(tile);  // None in one of them.
     }
-    return make_light_cut<float>(sampler.tree(), pilots.data(), is_lit.data(),
-                                 [](int p, const Importance<float>&) { return 1 + float(p % 4); });
+    return make_light_cut<float>(
+        sampler.tree(), pilots.data(), is_lit.data(),
+        [](int p, const Importance<float>&) { return 1 + float(p % 4); },
+        [](int p, const LightChoice<float>& choice, std::uint32_t) {
+          return SeenLight<float>{p % 5 > 0, (choice.light + choice.facet) % 3 == 0};
+        });
   });
   for (std::int32_t slot = 0; slot < 3; ++slot) {
     Receiver<float> receiver = receivers_around(GetParam().swarm, 43, 3)[std::size_t(slot)].receiver;

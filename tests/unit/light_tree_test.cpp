@@ -3,7 +3,8 @@
 //
 // Seen to fail when: importance has no slack, or takes the light's or the receiver's normal the wrong way
 // round; a cluster of a cut whose share rounds to 0 keeps none; a far facet's radius is measured to one
-// corner.
+// corner; a cluster that no pilot sees keeps no share; what is seen of a cluster does not count for the one
+// around it; ends of shares are rounded by more than the smaller of both; positions are not the inverse.
 #include "lightsampler/light_tree.h"
 
 #include "lightsampler/make_light_cut.h"
@@ -276,22 +277,38 @@ TEST(LightTree, ProbabilitiesAddUpToOneOrToNothing) {
 
 // Cuts.
 
+/// A pilot sees the facets of which this is true.
+using Sees = bool (*)(const LightChoice<float>& choice);
+constexpr Sees sees_all = [](const LightChoice<float>&) { return true; };
+constexpr Sees sees_nothing = [](const LightChoice<float>&) { return false; };
+constexpr Sees sees_every_third = [](const LightChoice<float>& c) { return (c.light + c.facet) % 3 == 0; };
+
+LightCut cut_with_sight(const LightTree& tree, const std::vector<Receiver<float>>& pilots,
+                        const std::array<bool, light_cut_pilots>& is_lit, Sees sees) {
+  return make_light_cut<float>(
+      tree, pilots.data(), is_lit.data(),
+      [](int p, const Importance<float>&) { return 1.0f + 0.1f * float(p); },
+      [&](int, const LightChoice<float>& choice, std::uint32_t) {
+        return SeenLight<float>{true, sees(choice)};
+      });
+}
+
 /// A cut for pilots at random, of which some are not lit.
 struct MadeCut {
   LightCuts cuts;
   Receiver<float> receiver{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, lit_side::front};
 
-  MadeCut(const LightTree& tree, RandomPlaces& random, const Vec3f& center, float extent, int lit) {
+  MadeCut(const LightTree& tree, RandomPlaces& random, const Vec3f& center, float extent, int lit,
+          Sees sees) {
     cuts.take_tiles({7, 3}, nullptr, [&](std::int32_t) {
-      std::array<Receiver<float>, light_cut_pilots> pilots;
+      std::vector<Receiver<float>> pilots(light_cut_pilots);
       std::array<bool, light_cut_pilots> is_lit{};
       for (int k = 0; k < light_cut_pilots; ++k) {
         const Vec3f normal = random.direction();
         pilots[std::size_t(k)] = {center + random.in_cube(extent), normal, normal, lit_side::front};
         is_lit[std::size_t(k)] = k < lit;
       }
-      return make_light_cut<float>(tree, pilots.data(), is_lit.data(),
-                                   [](int p, const Importance<float>&) { return 1.0f + 0.1f * float(p); });
+      return cut_with_sight(tree, pilots, is_lit, sees);
     });
     receiver.cuts = &cuts;
     receiver.cut = 1;
@@ -306,18 +323,86 @@ TEST(LightCuts, CanChooseWhateverHasPower) {
     const LightCluster& root = tree.clusters()[0];
     double total = 0;
     for (std::int32_t light = 0; light < c.lights.count(); ++light) total += c.lights.power(light);
-    for (const int lit : {0, 1, light_cut_pilots}) {
-      const MadeCut cut(tree, random, root.center, 2 * std::sqrt(root.radius_sq), lit);
-      double sum = 0;
-      for (std::int32_t place = 0; place < tree.facet_count(); ++place) {
-        const LightFacet& id = tree.facets()[place];
-        const float pmf = sampler.pmf<float>(cut.receiver, id.light, id.facet);
-        EXPECT_EQ(pmf > 0, total == 0 || c.lights.facet_power(id.light, id.facet) > 0) << c.name;
-        sum += pmf;
+    for (const int lit : {0, 1, light_cut_pilots})
+      for (const Sees sees : {sees_all, sees_nothing, sees_every_third}) {
+        const MadeCut cut(tree, random, root.center, 2 * std::sqrt(root.radius_sq), lit, sees);
+        double sum = 0;
+        for (std::int32_t place = 0; place < tree.facet_count(); ++place) {
+          const LightFacet& id = tree.facets()[place];
+          const float pmf = sampler.pmf<float>(cut.receiver, id.light, id.facet);
+          EXPECT_EQ(pmf > 0, total == 0 || c.lights.facet_power(id.light, id.facet) > 0) << c.name;
+          sum += pmf;
+        }
+        EXPECT_NEAR(sum, 1, 1e-5) << c.name << ", " << lit << " pilots lit";
       }
-      EXPECT_NEAR(sum, 1, 1e-5) << c.name << ", " << lit << " pilots lit";
-    }
   }
+}
+
+/// pmf of each of some lights that are one facet each, by a cut for pilots below them.
+std::vector<double> pmf_below(const Lights& lights, Sees sees) {
+  const TreeLights sampler(lights);
+  const std::vector<Receiver<float>> pilots(light_cut_pilots,
+                                            {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, lit_side::front});
+  std::array<bool, light_cut_pilots> is_lit;
+  is_lit.fill(true);
+  LightCuts cuts;
+  cuts.take_tiles({0}, nullptr,
+                  [&](std::int32_t) { return cut_with_sight(sampler.tree(), pilots, is_lit, sees); });
+  Receiver<float> receiver = pilots[0];
+  receiver.cuts = &cuts;
+  std::vector<double> pmf;
+  for (std::int32_t light = 0; light < lights.count(); ++light)
+    pmf.push_back(sampler.pmf<float>(receiver, light, 0));
+  return pmf;
+}
+
+TEST(LightCuts, ChooseLessWhatPilotsHardlySee) {
+  const Lights lights = at_one_place(12);
+  const std::vector<double> with_all = pmf_below(lights, sees_all),
+                            with_none = pmf_below(lights, sees_nothing),
+                            with_some = pmf_below(lights, sees_every_third);
+  for (std::size_t k = 0; k < 12; ++k) {
+    EXPECT_NEAR(with_all[k], 1.0 / 12, 0.5 / 12);
+    EXPECT_NEAR(with_none[k], with_all[k], 1e-6) << "all hidden alike";
+    EXPECT_EQ(with_some[k] > with_all[k], k % 3 == 0);
+    EXPECT_GT(with_some[k], 0.05 / 12) << "the share by power at the least";
+  }
+}
+
+TEST(ClusterVisibility, TakesLittleSeenClustersForWhatStandsAround) {
+  // A root with two children, the second of which has two more.
+  const std::vector<CutNode> nodes{{0, 0}, {1, 0}, {2, 0}, {3, 2}, {4, 2}};
+  ClusterVisibility none(nodes);
+  for (const double mean : none.means()) EXPECT_EQ(mean, 1);
+  ClusterVisibility some(nodes);
+  for (int k = 0; k < 6; ++k) some.count(1, true);
+  EXPECT_FALSE(some.has_met_something());
+  for (const double mean : some.means()) EXPECT_EQ(mean, 1);
+  for (int k = 0; k < 4; ++k) some.count(3, false);
+  EXPECT_TRUE(some.has_met_something());
+  const double root = (6 + 2.0) / (10 + 2), right = 2 * root / (4 + 2);
+  const std::vector<double> expected{root, (6 + 2 * root) / (6 + 2), right, 2 * right / (4 + 2), right};
+  for (std::size_t k = 0; k < nodes.size(); ++k) EXPECT_NEAR(some.means()[k], expected[k], 1e-12) << k;
+}
+
+TEST(LightCuts, HaveRoundSharesAndSeenClustersFirst) {
+  const std::vector<CutCluster> clusters{{0, 0.11, 1},   {3, 0.05, 0.1}, {4, 0.17, 1},  {9, 0.02, 0},
+                                         {10, 0.3, 0.6}, {11, 0, 1},     {12, 1e-8, 0}, {13, 0.35, 1}};
+  const LightCut cut = light_cut_of(clusters, 20);
+  const std::vector<std::int32_t> order{0, 2, 4, 5, 7, 1, 3, 6};
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    EXPECT_EQ(cut.clusters[k], order[k]);
+    EXPECT_EQ(cut.positions[std::size_t(order[k])], std::int32_t(k));
+    EXPECT_EQ(cut.places[k], clusters[k].begin);
+    const double share = (cut.shares[k + 1] - cut.shares[k]) * 0x1p-30,
+                 weight = clusters[std::size_t(order[k])].weight;
+    EXPECT_GE(share, 0.5 * weight - 0x1p-30) << k;
+    EXPECT_LE(share, 1.5 * weight + 0x1p-30) << k;
+    EXPECT_EQ(share > 0, weight > 0) << k;
+  }
+  EXPECT_EQ(cut.places[clusters.size()], 20);
+  EXPECT_EQ(cut.shares[LightCut::most_clusters], 1 << 30);
+  for (const std::size_t k : {1u, 2u}) EXPECT_EQ(cut.shares[k] % (1 << 25), 0) << "a multiple of 1/32";
 }
 
 TEST(LightCuts, AreMadeOnceWhereTheyAreKept) {
@@ -332,7 +417,7 @@ TEST(LightCuts, AreMadeOnceWhereTheyAreKept) {
     of.take_tiles(tiles, &store, [&](std::int32_t) {
       const std::vector<Receiver<float>> pilots(light_cut_pilots, pilot);
       ++made;
-      return make_light_cut<float>(tree, pilots.data(), is_lit.data(), [](int, const auto&) { return 1.0f; });
+      return cut_with_sight(tree, pilots, is_lit, sees_all);
     });
   };
   take(cuts, {1, 2});
