@@ -145,7 +145,8 @@ TEST_F(CommandLine, WritesEveryOutput) {
   const Image image = read_exr(path("a.exr"));
   EXPECT_EQ(image.width, 40);
   EXPECT_EQ(image.height, 30);
-  for (const char* name : {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"}) {
+  for (const char* name : {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B", "stderr.Y", "interval.R",
+                           "interval.G", "interval.B", "interval.Y", "interval.trust"}) {
     const Channel* channel = image.find(name);
     ASSERT_TRUE(channel) << name;
     for (const float value : channel->values) ASSERT_GE(value, 0) << name;  // NaN fails too
@@ -156,6 +157,40 @@ TEST_F(CommandLine, WritesEveryOutput) {
   EXPECT_EQ(metadata(image, "integrator"), "path");
   EXPECT_THAT(metadata(image, "software"), HasSubstr("Etendue"));
   EXPECT_EQ(metadata(image, "sceneHash").size(), 16u);
+}
+
+TEST_F(CommandLine, SaysErrorsOfImageAndRegions) {
+  const ProgramResult result =
+      run({"render", "scene.xml", "-o", "a.exr", "--spp", "32", "--confidence", "0.9", "--region",
+           "left=0,0,20,30", "--region", "right=20,0,40,30", "--stats", "s.json"});
+  ASSERT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("90 % intervals: "));
+  EXPECT_THAT(result.err, HasSubstr("right: mean luminance "));
+  const nlohmann::json stats = json("s.json"), regions = stats.at("regions");
+  EXPECT_EQ(stats.at("error").at("confidence"), 0.9);
+  double shares = 0;
+  for (const auto& share : stats.at("error").at("trust")) shares += share.get<double>();
+  EXPECT_NEAR(shares, 1, 1e-12);
+  const auto green = [&](const char* region, const char* what) {
+    return regions.at(region).at(what).at(1).get<double>();
+  };
+  EXPECT_NEAR(green("image", "mean"), stats.at("mean").at(1).get<double>(), 1e-12);
+  EXPECT_NEAR(green("image", "mean"), 0.5 * (green("left", "mean") + green("right", "mean")), 1e-9);
+  EXPECT_LT(green("left", "low"), green("left", "mean"));
+  EXPECT_GT(green("left", "high"), green("left", "mean"));
+  EXPECT_LT(stats.at("checks").at("image").at("rise_by_largest").get<double>(), 1);
+}
+
+TEST_F(CommandLine, AGoalIsReachedByAnImageThatASampleCountGivesToo) {
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "a.png", "--error", "0.2", "--of", "0.5", "--spp", "512",
+                 "--stats", "s.json", "--quiet"})
+                .exit_code,
+            0);
+  const nlohmann::json stats = json("s.json");
+  EXPECT_GT(stats.at("error").at("goal").at("reached").get<double>(), 0.4);
+  const std::string samples = std::to_string(stats.at("spp").get<int>());
+  ASSERT_EQ(run({"render", "scene.xml", "-o", "b.png", "--spp", samples, "--quiet"}).exit_code, 0);
+  EXPECT_EQ(read_file(path("a.png")), read_file(path("b.png")));
 }
 
 TEST_F(CommandLine, StatsHaveTheirKeys) {
