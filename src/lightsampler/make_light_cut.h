@@ -88,7 +88,9 @@ LightCut make_light_cut(const LightTree& tree, const Receiver<F>* receivers, con
     of_cut.push_back(entry.node);
   }
   const bool has_shares = std::any_of(whole.begin(), whole.end(), [](double w) { return w > 0; });
-  if (has_shares && heap.size() > 1) {
+  // Of fewer each gets several points of a pixel, seen or not.
+  constexpr std::size_t few_clusters = 16;
+  if (has_shares && heap.size() > few_clusters) {
     const std::vector<double> means = visibility_of<F>(tree, nodes, of_cut, shares, see);
     for (std::size_t e = 0; e < heap.size(); ++e) {
       visibility[e] = means[std::size_t(of_cut[e])];

@@ -357,15 +357,15 @@ std::vector<double> pmf_below(const Lights& lights, Sees sees) {
 }
 
 TEST(LightCuts, ChooseLessWhatPilotsHardlySee) {
-  const Lights lights = at_one_place(12);
+  const Lights lights = at_one_place(24);
   const std::vector<double> with_all = pmf_below(lights, sees_all),
                             with_none = pmf_below(lights, sees_nothing),
                             with_some = pmf_below(lights, sees_every_third);
-  for (std::size_t k = 0; k < 12; ++k) {
-    EXPECT_NEAR(with_all[k], 1.0 / 12, 0.5 / 12);
+  for (std::size_t k = 0; k < 24; ++k) {
+    EXPECT_NEAR(with_all[k], 1.0 / 24, 0.5 / 24);
     EXPECT_NEAR(with_none[k], with_all[k], 1e-6) << "all hidden alike";
     EXPECT_EQ(with_some[k] > with_all[k], k % 3 == 0);
-    EXPECT_GT(with_some[k], 0.05 / 12) << "the share by power at the least";
+    EXPECT_GT(with_some[k], 0.05 / 24) << "the share by power at the least";
   }
 }
 
