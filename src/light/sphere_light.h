@@ -83,8 +83,7 @@ class SphereLights {
   F pdf_area(const Int<F>& row, const Vec3<F>& reference, const Vec3<F>& position, const Vec3<F>& ng) const {
     const SphereCone<F> cone = cone_of<F>(row, reference);
     const Vec3<F> to_receiver = reference - position;
-    const F distance_sq = length_sq(to_receiver);
-    const F cos_theta_light = dot(ng, to_receiver) / sqrt(distance_sq);
+    const F distance_sq = length_sq(to_receiver), cos_theta_light = dot(ng, to_receiver) / sqrt(distance_sq);
     const F pdf = area_from_solid_angle(uniform_cone_pdf_solid_angle(cone.one_minus_cos_max), distance_sq,
                                         cos_theta_light);
     const F pdf_inside = F(0.25f * inv_pi) / (cone.radius * cone.radius);
@@ -92,8 +91,7 @@ class SphereLights {
   }
 
  private:
-  /// Which lanes are sampled so depends on receiver and sphere alone: samples and the densities of hits
-  /// agree.
+  /// Which lanes are sampled so depends on receiver and sphere alone, so that samples and hits agree.
   template <class F>
   struct ByCosine {
     SphereCone<F> cone;
