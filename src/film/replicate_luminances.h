@@ -13,14 +13,16 @@ namespace etendue {
 /// Replicates 0 to `replicates` - 1 of an image's pixels, rows from the top, as floats.
 class ReplicateLuminances {
  public:
-  /// An image that would need more is not kept. Enough for 3840 x 2160 pixels of 16 replicates.
+  /// Where so many replicates need more, none is kept. Enough for 3840 x 2160 pixels of 16 replicates.
   static constexpr std::size_t most_bytes = std::size_t(512) << 20;
 
   ReplicateLuminances() = default;  ///< Keeps none.
-  /// Keeps none where that takes more than most_bytes.
   ReplicateLuminances(int width, int height, int replicates);
+  /// For the replicates before this one; those that there are stay. How many a render has planned does not
+  /// matter, so that one that is interrupted keeps what one of fewer replicates does.
+  void make_room(int replicates);
 
-  bool is_kept() const { return !values_.empty(); }
+  bool is_kept() const { return is_kept_; }
   /// The means of the replicates from `first` on of a pixel. Threads may add different pixels at once.
   void add(int x, int y, std::int64_t first, std::span<const Color<double>> means);
   /// Of the first `replicates` of a pixel; nothing where none are kept.
@@ -33,7 +35,8 @@ class ReplicateLuminances {
   std::size_t offset(int x, int y) const {
     return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(replicates_);
   }
-  int width_ = 0, replicates_ = 0;
+  int width_ = 0, height_ = 0, replicates_ = 0;  ///< Room for so many.
+  bool is_kept_ = false;
   std::vector<float> values_;
 };
 

@@ -49,7 +49,8 @@ Imf::Header header_of(const std::filesystem::path& file, const Image& image) {
   if (image.width < 1 || image.height < 1)
     throw InputError(fmt::format("{}: an image of {} x {} pixels", file.string(), image.width, image.height));
   Imf::Header header(image.width, image.height);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  // Noise hardly gets smaller: ZIP takes seven times as long and leaves 8 % less.
+  header.compression() = Imf::RLE_COMPRESSION;
   for (const Channel& channel : image.channels) {
     check_name(file, "channel", channel.name, header.channels().findChannel(channel.name));
     if (channel.values.size() != std::size_t(image.width) * std::size_t(image.height))

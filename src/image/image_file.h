@@ -24,7 +24,7 @@ struct Image {
   const Channel* find(const std::string& name) const;
 };
 
-/// 32-bit float, ZIP. Written to a temporary file in the same folder and renamed, so that a crash leaves the
+/// 32-bit float, run-length encoded. Written to a temporary file in the same folder and renamed, so that a crash leaves the
 /// old file or the new one. Values are kept bit for bit, NaN and infinities too. Throws InputError with the
 /// path and the reason: an image that does not fit its size, two channels of one name, metadata under a name
 /// that EXR uses itself, a file that cannot be written.

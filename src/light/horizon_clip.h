@@ -16,6 +16,7 @@ struct HorizonClip {
   // From the first corner (m).
   std::array<Vec3<F>, most_corners + 1> begin, end;
   Vec3<F> cut_begin, cut_end;
+  Mask<F> is_cut;
   bool is_any_cut;
   int sides;
 
@@ -33,7 +34,8 @@ struct HorizonClip {
       z[n] = first_corner.z + corner[n].z;
       least = min(least, z[n]);
     }
-    is_any_cut = any(least < F(0));
+    is_cut = least < F(0);
+    is_any_cut = any(is_cut);
     cut_begin = cut_end = zero;
     if (!is_any_cut) {
       for (std::size_t k = 0; k < std::size_t(sides); ++k) begin[k] = corner[k], end[k] = corner[k + 1];

@@ -103,14 +103,16 @@ class ProjectedPolygon {
       parts_[k] = side.signed_projected_solid_angle;
       if (!is_any_beside) continue;
       const ZenithTriangle<F> next_spoke = below(first, clip_.end[k]);
-      // Others have no length: what the horizon cuts off, and what only neighbours in the packet have.
       const Mask<F> is_triangle =
-          mask_and(length_sq(clip_.begin[k] - first) > F(0), length_sq(clip_.end[k] - first) > F(0),
-                   length_sq(side.along) > F(0));
+          mask_and(length_sq(clip_.begin[k] - first) > F(0), length_sq(clip_.end[k] - first) > F(0));
+      // Others have no length: what the horizon cuts off, and what only neighbours in the packet have. Where
+      // the horizon cuts, its crossings are rounded too.
+      const Mask<F> is_side =
+          mask_and(is_beside, length_sq(side.along) > F(0), mask_or(is_triangle, clip_.is_cut));
       const F triangle = spoke + parts_[k] - next_spoke.signed_projected_solid_angle;
       parts_[k] = select(is_beside, select(is_triangle, max(triangle, F(0)), F(0)), parts_[k]);
       spoke = next_spoke.signed_projected_solid_angle;
-      angles_ = angles_ + select(mask_and(is_beside, is_triangle), side.angle + next_spoke.angle, F(0));
+      angles_ = angles_ + select(is_side, side.angle + next_spoke.angle, F(0));
     }
   }
 

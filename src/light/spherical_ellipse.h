@@ -66,8 +66,10 @@ class SphericalEllipse {
     const Vec2<F> p = cone_.to_axis(on_disk);
     const F long_part = abs(p.x) * cos_short_, short_part = abs(p.y) * cos_long_;
     const F psi = half_turn_angle(short_part, long_part);
-    const F inv_size = F(1) / max(sqrt(long_part * long_part + short_part * short_part), F(tiny));
-    const F cosine = long_part * inv_size, sine = short_part * inv_size;
+    const F size = sqrt(long_part * long_part + short_part * short_part),
+            inv_size = F(1) / max(size, F(tiny));
+    // The axis itself belongs to every wedge.
+    const F cosine = select(size > F(0), long_part * inv_size, F(1)), sine = short_part * inv_size;
     const F cos_part = cos_long_ * cosine, sin_part = cos_short_ * sine,
             q = sqrt(cos_part * cos_part + sin_part * sin_part);
     return lines_.height(psi * F(1 / width)) * (F(1) + q) * inv_measure_;

@@ -22,7 +22,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
   std::vector<FilmStack> films;  // Of the image, and then of each layer.
   for (std::size_t k = 0; k <= settings.layers.size(); ++k)
     films.emplace_back(scene.camera.width_px, scene.camera.height_px);
-  ReplicateLuminances luminances(scene.camera.width_px, scene.camera.height_px, replicates);
+  ReplicateLuminances luminances(scene.camera.width_px, scene.camera.height_px, 0);
   Passes passes(scene, settings, progress, stop);
   RenderCounts counts;
   InvalidSamples invalid;
@@ -34,6 +34,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
   while (done < replicates && is_complete && !(done > 1 && must_stop())) {
     const int end =
         done == 1 && must_stop() ? 2 : end_of_next_pass(done, replicates, seconds_per_replicate, pixels);
+    luminances.make_room(end);
     const PassResult pass = passes.render(films, end, &luminances);
     counts.samples += pass.counts.samples;
     counts += pass.counts;

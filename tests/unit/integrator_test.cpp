@@ -92,9 +92,12 @@ TEST(IntegratorNames, OtherThanDirectMeanTheSameInAllDialects) {
 
 // --- Keys ---
 
-TEST(IntegratorKeys, TheHeuristicIsBalanceUnlessPowerIsStated) {
+TEST(IntegratorKeys, TheHeuristicIsThatOfTheHandoutsUnlessStated) {
+  EXPECT_EQ(heuristic_of(make("direct_light", Dialect::nori).settings), Heuristic::power);
   for (const std::string name : {"mis", "direct_mis", "path_mis", "path", "mipath"}) {
-    EXPECT_EQ(heuristic_of(make(name, Dialect::nori).settings), Heuristic::balance) << name;
+    EXPECT_EQ(heuristic_of(make(name, Dialect::nori).settings),
+              name == "path" ? Heuristic::power : Heuristic::balance)
+        << name;
     EXPECT_EQ(heuristic_of(make(name, Dialect::nori, text_xml("heuristic", "balance")).settings),
               Heuristic::balance);
     const Made power = make(name, Dialect::nori, text_xml("heuristic", "power"));
@@ -181,10 +184,11 @@ TEST(LightSamplesOfAnIntegrator, AreAsManyAsAskedForAtTheFirstVertex) {
 
 TEST(HeuristicOfAnIntegrator, IsThatAskedForWhereThereIsOne) {
   for (const char* name : {"mis", "path_mis", "path", "direct_light"}) {
-    const IntegratorSettings power = with_heuristic(integrator_from_name(name), "power");
+    const IntegratorSettings by_default = integrator_from_name(name);
+    const IntegratorSettings power = with_heuristic(by_default, "power");
     EXPECT_EQ(power.name, name);
     EXPECT_EQ(heuristic_name(power), "power");
-    EXPECT_EQ(rules_of(with_heuristic(power, "balance")), rules_of(integrator_from_name(name)));
+    EXPECT_EQ(rules_of(with_heuristic(power, heuristic_name(by_default))), rules_of(by_default));
   }
   for (const char* name : {"light", "direct", "average", "normals"})
     EXPECT_THAT(test::error_of([&] { with_heuristic(integrator_from_name(name), "power"); }),

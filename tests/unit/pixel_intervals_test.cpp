@@ -155,6 +155,24 @@ TEST(ReplicateLuminances, AreNotKeptWhereTheyTakeTooMuch) {
   EXPECT_TRUE(ReplicateLuminances(3840, 2160, 16).is_kept());
   EXPECT_FALSE(ReplicateLuminances(3840, 2160, 17).is_kept());
   EXPECT_TRUE(ReplicateLuminances(3840, 2160, 17).at(3, 4, 2).empty());
+  ReplicateLuminances grown(3840, 2160, 3);
+  grown.make_room(17);
+  EXPECT_FALSE(grown.is_kept());
+}
+
+TEST(ReplicateLuminances, StayWhereRoomIsMade) {
+  ReplicateLuminances luminances(2, 2, 0);
+  for (int replicate = 0; replicate < 9; ++replicate) {
+    luminances.make_room(replicate + 1);
+    for (const int pixel : {0, 1, 2, 3}) {
+      const double value = 10 * pixel + replicate;
+      luminances.add(pixel % 2, pixel / 2, replicate, std::array{Color<double>{value, value, value}});
+    }
+  }
+  for (const int pixel : {0, 1, 2, 3})
+    for (int replicate = 0; replicate < 9; ++replicate)
+      EXPECT_NEAR(luminances.at(pixel % 2, pixel / 2, 9)[std::size_t(replicate)], 10 * pixel + replicate,
+                  1e-4);
 }
 
 }  // namespace

@@ -250,18 +250,25 @@ void is_projected_accurate(const Scene&, Packet& p) {
 void spherical_ellipse(const Scene&, Packet& p) {
   const Vec3<F> center = p.vec();
   const SphericalEllipse<F> ellipse({center.x, center.y, center.z, p.real()});
-  const auto sample = ellipse.sample(p.square());
-  p.give(sample.on_disk), p.give(sample.pdf), p.give(ellipse.pdf(sample.on_disk));
+  const Vec2<F> u = p.square();
+  const auto sample = ellipse.sample(u);
+  p.give(sample.on_disk), p.give(sample.pdf);
+  // Next to the axis rounding decides in which wedge a point is.
+  const F off_axis = max(abs(u.x - F(0.5f)), abs(u.y - F(0.5f)));
+  p.give(select(off_axis > F(1e-3f), ellipse.pdf(sample.on_disk), F(0)));
 }
 void projected_cap(const Scene&, Packet& p) {
   const Vec3<F> axis = p.vec(), normal = p.vec();
   const CapOverHorizon<F> over_horizon(axis, p.real(), normal);
   const ProjectedCap<F> cap(over_horizon);
   F pdf;
-  const CapDirection<F> direction = cap.sample(p.square(), pdf);
+  const Vec2<F> u = p.square();
+  const CapDirection<F> direction = cap.sample(u, pdf);
   const auto where = [&](const F& value) { return select(cap.is_accurate(), value, F(0)); };
   p.give(where(direction.up)), p.give(where(direction.across)), p.give(where(direction.axis));
-  p.give(where(direction.cos_theta)), p.give(where(pdf));
+  // At the ends of a cut cap's slices the density is a quotient of what vanishes.
+  const Mask<F> is_inside = mask_and(u.x > F(1e-3f), u.x<F(1 - 1e-3f), u.y> F(1e-3f), u.y < F(1 - 1e-3f));
+  p.give(where(direction.cos_theta)), p.give(where(select(is_inside, pdf, F(0))));
 }
 
 template <class Sampler>
