@@ -67,8 +67,8 @@ bool do_halves_differ(const ConvergenceChecks& checks) {
 
 void report_checks(const std::string& name, const ConvergenceChecks& checks) {
   if (checks.rise_by_largest > 0.01)
-    say("{}: were the brightest replicate drawn once more, the mean would rise by {:.2g} %\n", name,
-        100 * checks.rise_by_largest);
+    say("{}: were the replicate that raises the mean most drawn once more, the mean would rise by {:.2g} %\n",
+        name, 100 * checks.rise_by_largest);
   if (checks.slope_low > -0.5)
     say("{}: the error falls as samples^{:.2f} ({:.2f} to {:.2f}), slower than the root: few samples decide, "
         "or "

@@ -42,7 +42,8 @@ std::vector<Region> regions_of(const std::vector<std::string>& texts, int width_
     if (pixels.x_begin < 0 || pixels.y_begin < 0 || pixels.x_end > width_px || pixels.y_end > height_px)
       throw InputError(fmt::format("--region {}: it reaches out of the image of {} x {} pixels", text,
                                    width_px, height_px));
-    if (pixels.width() <= 0 || pixels.height() <= 0)
+    // Not their differences, which may be too large.
+    if (pixels.x_end <= pixels.x_begin || pixels.y_end <= pixels.y_begin)
       throw InputError(
           fmt::format("--region {}: no pixel is in it; X1 and Y1 are one beyond the last", text));
     const bool is_taken = std::any_of(regions.begin(), regions.end(),

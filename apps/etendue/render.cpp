@@ -72,7 +72,7 @@ int run(const RenderOptions& options) {
   const std::vector<Region> regions =
       regions_of(options.regions, loaded.scene.camera.width_px, loaded.scene.camera.height_px);
   check_settings(settings);
-  const LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};
+  LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};
   const std::vector<Finding> findings = lint(subject, brief);
   warn(options, loaded.warnings, options.replay.empty() ? findings : std::vector<Finding>{});
   for (const Finding& finding : findings)
@@ -95,6 +95,11 @@ int run(const RenderOptions& options) {
   const std::uint64_t hash = scene_hash(description);
   catch_signals(LaterSignals::hurry);
   const std::optional<Pilot> pilot = settle_samples(options, loaded.scene, settings);
+  if (pilot && pilot->is_interrupted) {
+    say("interrupted before the image was begun: no file was written\n");
+    return interrupted;
+  }
+  subject.samples_per_pixel = settings.samples_per_pixel;
   announce(options, description, loaded, settings);
   RenderResult rendered = render_with_progress(loaded.scene, settings, options.is_quiet);
   ImageErrors errors = errors_of(rendered, regions, options.confidence);

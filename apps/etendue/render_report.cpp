@@ -196,7 +196,7 @@ void report_dark(const Rendering& rendering, const LintSubject& subject) {
   if (const std::size_t lit = count_lit_pixels(subject, dark); lit > 0)
     say("about {} of {} black pixels show surfaces that light does reach, but no sample found it: there the "
         "error is "
-        "not 0, as the stderr layers say, but unknown\n",
+        "not 0, as the stderr layers say; the interval layers say how much light there may be\n",
         lit, dark.size());
 }
 

@@ -1,4 +1,4 @@
-// The luminance of each replicate of each pixel, kept where memory allows: what resampling works on.
+// The luminance of each replicate of each pixel, kept where memory allows: what pixels are compared by.
 #pragma once
 
 #include "base/color.h"

@@ -118,7 +118,7 @@ class DiskLights {
               dot(to_center, short_axis) * (inv_short * inv_long),
               select(is_facing, -dot(ng, to_center) * inv_long, F(1)), short_sq * (inv_long * inv_long)};
       const Mask<F> none = F(1) < F(0);
-      is_by_area = technique == LightTechnique::automatic
+      is_by_area = technique == LightTechnique::automatic || technique == LightTechnique::transformed_cosine
                        ? is_small_from(length_sq(to_center), F(1) / lights.pdf_area_.at(row))
                        : none;
     }

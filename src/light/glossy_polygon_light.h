@@ -47,7 +47,7 @@ class GlossyPolygonLight {
 
     const PolygonFan<F>& fan = polygon_.fan();
     const Vec3<F> wi = select(is_by_lobe, in_lobe.sample({u_left, to_unit_float(request.u.y)}), diffuse.wi);
-    const LightHit<F> hit{receiver_.position + wi * (-fan.height / dot(wi, fan.ng)), fan.ng, wi, Int<F>(0)};
+    const LightHit<F> hit{receiver_.position + wi * fan.distance_along(wi), fan.ng, wi, Int<F>(0)};
     const Vec3<F> to_light = hit.position - receiver_.position, from_apex = to_light - fan.apex;
     const F clear = clearance<F>(
         fan.ng, abs_each(receiver_.position + fan.apex) + abs_each(from_apex) + abs_each(to_light),

@@ -34,6 +34,10 @@ struct PolygonFan {
                         select(less(Int<F>(k), corners), length_sq(apex + from_apex[std::size_t(k)]), F(0)));
     return sqrt(distance_sq);
   }
+
+  /// To the polygon's plane along a direction (unit) that meets the polygon, m. Along the plane itself
+  /// rounding must not put the place behind the receiver, nor beyond the polygon.
+  F distance_along(const Vec3<F>& wi) const { return min(height / max(-dot(wi, ng), F(1e-30f)), farthest()); }
 };
 
 }  // namespace etendue

@@ -64,10 +64,7 @@ class PolygonLight {
     by_directions(
         [&](const ProjectedPolygon<F>& polygon, const Frame<F>& frame, const Mask<F>& m) {
           const Vec3<F> wi = frame.world_from_local(polygon.sample(u));
-          // Along the polygon's own plane rounding must not put it behind the receiver, nor beyond the
-          // polygon.
-          const F distance = min(fan_.height / max(-dot(wi, fan_.ng), F(1e-30f)), fan_.farthest());
-          take(m, wi * distance, cosine_density(polygon, frame, wi));
+          take(m, wi * fan_.distance_along(wi), cosine_density(polygon, frame, wi));
         },
         [&](const SphericalPolygon<F>& polygon, const Mask<F>& m) {
           take(m, polygon.sample(u), F(1) / polygon.solid_angle());

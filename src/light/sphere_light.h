@@ -125,10 +125,11 @@ class SphereLights {
     const Vec3<F> position = cone.center + ng * cone.radius;
     const Vec3<F> terms =
         abs_each(cone.center) + abs_each(ng) * cone.radius + abs_each(position - request.receiver.position);
-    const F arriving = select(m, F(1) / pdf, F(0));
+    const Mask<F> is_there = mask_and(m, pdf > F(0));  // It is 0 at the end of a cut cap.
+    const F arriving = select(is_there, F(1) / pdf, F(0));
     return light_sample_towards<F>(aside + cone.to_center * seen.axis,
                                    position + ng * clearance<F>(ng, terms, F(0)),
-                                   {arriving, arriving, arriving}, pdf, m, request, piece_at(u));
+                                   {arriving, arriving, arriving}, pdf, is_there, request, piece_at(u));
   }
 
   template <class F>

@@ -242,6 +242,7 @@ LightTree::LightTree(const Lights& lights) {
     while (last + 1 < facet_count() && shares_[std::size_t(last) + 1] <= at << guide_shift_) ++last;
     guide_.push_back(last);
   }
+  guide_.push_back(last);  // Of the share of all, and what stands behind it.
   while (ranks() > most_ranks) ++rank_shift_;
   for (std::size_t i = 0; i < clusters_.size(); ++i)
     if (clusters_[i].first_child == 0)

@@ -4,19 +4,22 @@
 #include "film/pixel_intervals.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
 namespace etendue {
 namespace {
 
-constexpr int least_samples = 16, step = 8;  // A multiple of 8 has 8 replicates.
-constexpr double largest_growth = 8;         // From one pilot to the next, and from the last to the image.
+constexpr double largest_growth = 8;  // From one pilot to the next, and from the last to the image.
 
+/// Up to a number of which default_replicates() makes few: a multiple of a power of two.
 int rounded_up(double samples, int most) {
-  const double steps = std::ceil(samples / step);
-  return std::max(least_samples, int(std::min(steps * step, double(most / step * step))));
+  const double wanted = std::clamp(samples, double(least_pilot_samples), double(most));
+  const auto step = int(std::max(8u, std::bit_ceil(std::uint32_t(wanted) / 32)));
+  return std::max(least_pilot_samples, std::min(int(std::ceil(wanted / step)), most / step) * step);
 }
 
 RenderResult render_pilot(const Scene& scene, const RenderSettings& settings, int samples, Pilot& pilot,
@@ -65,9 +68,14 @@ double share_within(const RenderResult& result, const ErrorGoal& goal) {
 Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, const ErrorGoal& goal, int most,
                         const StopRequest* stop) {
   Pilot pilot;
-  for (int samples = least_samples;;) {
+  for (int samples = least_pilot_samples;;) {
     const RenderResult result = render_pilot(scene, settings, samples, pilot, stop);
     if (pilot.is_interrupted) return pilot;
+    pilot.is_dark = luminance(result.film.mean()) == 0;
+    if (pilot.is_dark && samples > least_pilot_samples) {
+      pilot.samples_per_pixel = samples;
+      return pilot;
+    }
     std::vector<double> ratios = over_goal(result, goal);
     const auto of_share =
         ratios.begin() +
@@ -76,6 +84,7 @@ Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, cons
     std::nth_element(ratios.begin(), of_share, ratios.end());
     const double needed = samples * *of_share * *of_share;
     pilot.samples_per_pixel = rounded_up(needed, most);
+    pilot.is_most = needed > pilot.samples_per_pixel;
     if (pilot.samples_per_pixel <= largest_growth * samples) return pilot;
     samples = rounded_up(std::min(samples * largest_growth, pilot.samples_per_pixel / largest_growth), most);
   }
@@ -85,13 +94,16 @@ Pilot samples_for_time(const Scene& scene, const RenderSettings& settings, doubl
                        const StopRequest* stop) {
   constexpr double share_of_pilot = 0.05, reserve = 0.97;
   Pilot pilot;
-  for (int samples = least_samples;;) {
+  for (int samples = least_pilot_samples;;) {
     const double before = pilot.seconds;
     render_pilot(scene, settings, samples, pilot, stop);
     if (pilot.is_interrupted) return pilot;
     const double of_sample = (pilot.seconds - before) / samples;
     const double left = reserve * seconds - pilot.seconds;
-    pilot.samples_per_pixel = rounded_up(std::max(0.0, left / of_sample - step + 1), most);
+    // A little less, as numbers are rounded up.
+    const double possible = left / of_sample / 1.03;
+    pilot.samples_per_pixel = rounded_up(possible, most);
+    pilot.is_most = possible > most;
     if (pilot.seconds >= share_of_pilot * seconds || samples >= most / 2) return pilot;
     samples = rounded_up(std::min(samples * largest_growth, share_of_pilot * seconds / of_sample), most / 2);
   }

@@ -9,9 +9,9 @@
 
 namespace etendue {
 
-/// A share of the pixels is to have an interval of half-width at most `relative` times the larger of the pixel
-/// and 1 % of the image's mean, by luminance. Pixels that met no light, such as the background, count as
-/// within.
+/// A share of the pixels is to have an interval of half-width at most `relative` times the larger of the
+/// pixel and 1 % of the image's mean, by luminance. Pixels that met no light, such as the background, count
+/// as within.
 struct ErrorGoal {
   double relative;           ///< Positive.
   double share = 0.99;       ///< In (0, 1].
@@ -19,7 +19,9 @@ struct ErrorGoal {
 };
 
 struct Pilot {
-  int samples_per_pixel = 0;  ///< What the image needs; a multiple of 8, at least 16.
+  int samples_per_pixel = 0;  ///< What the image needs, or the most there may be; at least 16.
+  bool is_most = false;       ///< It would need more.
+  bool is_dark = false;       ///< No pilot met any light: the image will be black.
   std::int64_t samples = 0;   ///< That the pilots took, of all pixels.
   double seconds = 0;
   bool is_interrupted = false;  ///< Then it tells nothing.
@@ -28,13 +30,17 @@ struct Pilot {
 /// Share of the rendered pixels that reach `goal.relative`.
 double share_within(const RenderResult& result, const ErrorGoal& goal);
 
+/// Samples a pixel that pilots take at the least, and images after them.
+inline constexpr int least_pilot_samples = 16;
+
 /// From pilots of 16 samples a pixel and more, the last with at least an eighth of what is needed; errors are
 /// taken to fall with the root of the samples. `settings` say all but the number of samples.
-/// \param most samples a pixel; no more are asked for
+/// \param most samples a pixel, at least 16; no more are asked for
 Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, const ErrorGoal& goal, int most,
                         const StopRequest* stop = nullptr);
 
-/// What can be rendered in `seconds` > 0, the pilot's own time taken off; at least 16.
+/// What can be rendered in `seconds` > 0, the pilots' own time taken off, from pilots that take a twentieth
+/// of it; at least 16.
 Pilot samples_for_time(const Scene& scene, const RenderSettings& settings, double seconds, int most,
                        const StopRequest* stop = nullptr);
 

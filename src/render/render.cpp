@@ -22,7 +22,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
   std::vector<FilmStack> films;  // Of the image, and then of each layer.
   for (std::size_t k = 0; k <= settings.layers.size(); ++k)
     films.emplace_back(scene.camera.width_px, scene.camera.height_px);
-  ReplicateLuminances luminances(scene.camera.width_px, scene.camera.height_px, 0);
+  ReplicateLuminances luminances;  // Of one replicate alone there is no spread.
+  if (replicates > 1) luminances = ReplicateLuminances(scene.camera.width_px, scene.camera.height_px, 0);
   Passes passes(scene, settings, progress, stop);
   RenderCounts counts;
   InvalidSamples invalid;
