@@ -87,7 +87,20 @@ TEST_F(ExrFile, KeepsALargeImageOfManyChunks) {
 
 TEST_F(ExrFile, ReadsTheMostCompressibleImage) {  // The guards must not refuse what a small file truly holds.
   const Image written = constant_image(4096, 1024);
-  write_exr(file, written);
+  Imf::Header header(written.width, written.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer pixels;
+  for (const Channel& channel : written.channels) {
+    header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+    char* values = reinterpret_cast<char*>(const_cast<float*>(channel.values.data()));
+    pixels.insert(channel.name,
+                  Imf::Slice(Imf::FLOAT, values, sizeof(float), sizeof(float) * std::size_t(written.width)));
+  }
+  {
+    Imf::OutputFile output(file.string().c_str(), header);
+    output.setFrameBuffer(pixels);
+    output.writePixels(written.height);
+  }
   EXPECT_LT(fs::file_size(file), 64 * 1024u);
   EXPECT_EQ(read_exr(file).channels[0].values, written.channels[0].values);
 }
