@@ -9,13 +9,13 @@ namespace {
 
 Film noisy_film(int side_px, double mean, double deviation, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
-  std::normal_distribution<double> law(mean, deviation);
+  std::normal_distribution<double> law(0, 1);
   Film film(side_px, side_px);
   for (int y = 0; y < side_px; ++y)
     for (int x = 0; x < side_px; ++x) {
       std::vector<Color<double>> means(8);
       for (Color<double>& each : means) {
-        const double value = law(engine);
+        const double value = mean + deviation * law(engine);
         each = {value, value, value};
       }
       film.at(x, y) = combine_replicates(means, 0);
