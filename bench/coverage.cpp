@@ -2,6 +2,7 @@
 // docs/error_bars.md has the figures.
 
 #include "film/pixel_intervals.h"
+#include "generated_scenes.h"
 #include "integrator/single_sample.h"
 #include "lint/probe.h"
 #include "render/render.h"
@@ -61,15 +62,6 @@ RenderResult render_with(const Scene& scene, const Setup& setup) {
   settings.seed = setup.seed;
   settings.isa = available_isas().back();
   return render(scene, settings);
-}
-
-/// The same picture in fewer pixels.
-void shrink(Camera& camera, int width_px) {
-  const int height_px = std::max(1, width_px * camera.height_px / camera.width_px);
-  camera.per_px_x = camera.per_px_x * (float(camera.width_px) / float(width_px));
-  camera.per_px_y = camera.per_px_y * (float(camera.height_px) / float(height_px));
-  camera.width_px = width_px;
-  camera.height_px = height_px;
 }
 
 template <class Function>
@@ -231,7 +223,7 @@ int main(int argc, char** argv) try {
     for (const std::string& file : files) {
       Scene scene = std::move(load_scene(read_nori_xml(file)).scene);
       scene.sampler = SamplerKind::sobol;
-      shrink(scene.camera, width_px);
+      bench::shrink(scene.camera, width_px);
       fmt::print("{}, {} x {}\n", file, scene.camera.width_px, scene.camera.height_px);
       measure(scene, integrator, samples, seeds, 0);
     }

@@ -1,5 +1,6 @@
 #include "generated_scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -133,6 +134,14 @@ Scene swarm_scene(int light_count, int width_px, int height_px) {
     lights.add<MeshLights>({radiance, radiance, radiance}, "", geometry, id);
   }
   return seen_from_the_front(std::move(geometry), std::move(lights), width_px, height_px);
+}
+
+void shrink(Camera& camera, int width_px) {
+  const int height_px = std::max(1, width_px * camera.height_px / camera.width_px);
+  camera.per_px_x = camera.per_px_x * (float(camera.width_px) / float(width_px));
+  camera.per_px_y = camera.per_px_y * (float(camera.height_px) / float(height_px));
+  camera.width_px = width_px;
+  camera.height_px = height_px;
 }
 
 }  // namespace etendue::bench

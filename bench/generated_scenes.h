@@ -1,4 +1,4 @@
-// Scenes made by formula, of any size: a terrain, 64 balls over it, four area lights.
+// Scenes of any size: made by formula, a terrain, 64 balls over it, four area lights; or any in fewer pixels.
 #pragma once
 
 #include "scene/scene.h"
@@ -12,5 +12,8 @@ Scene terrain_scene(int grid, int width_px, int height_px, bool has_normals);
 
 /// The same terrain under a swarm of square mesh lights that shine down, of one area together.
 Scene swarm_scene(int light_count, int width_px, int height_px);
+
+/// The same picture in fewer pixels.
+void shrink(Camera& camera, int width_px);
 
 }  // namespace etendue::bench

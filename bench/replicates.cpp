@@ -1,6 +1,7 @@
 // What a pixel's error bar is worth: its coverage and width, and the variance of the estimate, for replicates
 // that are blocks of one sequence and for scramblings of their own. docs/conventions.md has the figures.
 
+#include "generated_scenes.h"
 #include "render/render.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
@@ -35,15 +36,6 @@ struct Pixel {
     return is_edge ? edge : relative_error_sq < 0.25 ? smooth : penumbra;
   }
 };
-
-/// The same picture in fewer pixels.
-void shrink(Camera& camera, int width_px) {
-  const int height_px = std::max(1, width_px * camera.height_px / camera.width_px);
-  camera.per_px_x = camera.per_px_x * (float(camera.width_px) / float(width_px));
-  camera.per_px_y = camera.per_px_y * (float(camera.height_px) / float(height_px));
-  camera.width_px = width_px;
-  camera.height_px = height_px;
-}
 
 /// All channels agree on what is light, so one of them is enough.
 RunningStatistics green(const PixelStatistics& pixel) {
@@ -154,7 +146,7 @@ int main(int argc, char** argv) try {
       "class\n");
   for (const std::string& file : files) {
     Scene scene = std::move(load_scene(read_nori_xml(file)).scene);
-    shrink(scene.camera, width_px);
+    bench::shrink(scene.camera, width_px);
     fmt::print("{}, {} x {}\n", file, scene.camera.width_px, scene.camera.height_px);
     for (const char* integrator : {"light", "mis"}) measure(scene, integrator, seeds, reference_samples);
   }

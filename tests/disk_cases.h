@@ -3,12 +3,12 @@
 
 #include "geometry/geometry.h"
 #include "polygon_outline.h"
+#include "random_cases.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <string_view>
 
 namespace etendue {
@@ -50,9 +50,9 @@ inline constexpr std::array disk_case_kinds{"ordinary", "far",         "touching
                                             "grazing",  "at the edge", "on the axis"};
 
 /// \param kind of disk_case_kinds
-class DiskCases {
+class DiskCases : public RandomCases {
  public:
-  explicit DiskCases(unsigned seed) : random_(seed) {}
+  using RandomCases::RandomCases;
 
   DiskCase next(std::size_t kind) {
     const std::string_view name = disk_case_kinds[kind];
@@ -88,17 +88,6 @@ class DiskCases {
     made.position = made.disk.center + along(x * distance, y * distance, z * distance);
     return made;
   }
-
-  double unit() { return std::uniform_real_distribution<double>(0, 1)(random_); }
-
- private:
-  Vec3l direction() {
-    const double z = 2 * unit() - 1, across = std::sqrt(1 - z * z), turn = 2 * std::numbers::pi * unit();
-    return {across * std::cos(turn), across * std::sin(turn), z};
-  }
-  static Vec3f rounded(const Vec3l& v) { return {float(v.x), float(v.y), float(v.z)}; }
-
-  std::mt19937_64 random_;
 };
 
 }  // namespace etendue

@@ -4,12 +4,12 @@
 
 #include "geometry/convex_pieces.h"
 #include "polygon_outline.h"
+#include "random_cases.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <string_view>
 #include <vector>
 
@@ -57,9 +57,9 @@ inline constexpr std::array polygon_case_kinds{"ordinary", "far",       "tiny", 
                                                "sliver",   "at a side", "low light", "overhead"};
 
 /// \param kind of polygon_case_kinds. May give a polygon without an area.
-class PolygonCases {
+class PolygonCases : public RandomCases {
  public:
-  explicit PolygonCases(unsigned seed) : random_(seed) {}
+  using RandomCases::RandomCases;
 
   PolygonCase next(std::size_t kind) {
     const std::string_view name = polygon_case_kinds[kind];
@@ -106,17 +106,6 @@ class PolygonCases {
     if (name == "overhead") made.ns = rounded(normalize(to_light + direction() * 0.02L));
     return made;
   }
-
-  double unit() { return std::uniform_real_distribution<double>(0, 1)(random_); }
-
- private:
-  Vec3l direction() {
-    const double z = 2 * unit() - 1, across = std::sqrt(1 - z * z), turn = 2 * std::numbers::pi * unit();
-    return {across * std::cos(turn), across * std::sin(turn), z};
-  }
-  static Vec3f rounded(const Vec3l& v) { return {float(v.x), float(v.y), float(v.z)}; }
-
-  std::mt19937_64 random_;
 };
 
 }  // namespace etendue

@@ -111,7 +111,7 @@ void add_error_stats(const Rendering& rendering, nlohmann::ordered_json& json) {
     if (const std::optional<ErrorGoal> goal = error_goal(rendering.options))
       error["goal"] = {{"relative", goal->relative},
                        {"share", goal->share},
-                       {"reached", share_within(rendering.result, *goal)}};
+                       {"reached", share_within(rendering.result.film, rendering.errors.intervals, *goal)}};
   }
   const std::array shares = shares_of_rules(rendering);
   for (std::size_t rule = 0; rule < shares.size(); ++rule) error["trust"][rule_names[rule]] = shares[rule];
@@ -126,7 +126,8 @@ void report_errors(const Rendering& rendering) {
   report_intervals(rendering);
   if (const std::optional<ErrorGoal> goal = error_goal(rendering.options))
     say("{:.1f} % of pixels have a half-width below {:g} % ({:g} % were asked for)\n",
-        100 * share_within(rendering.result, *goal), 100 * goal->relative, 100 * goal->share);
+        100 * share_within(rendering.result.film, rendering.errors.intervals, *goal), 100 * goal->relative,
+        100 * goal->share);
   for (const RegionErrors& region : rendering.errors.regions) {
     const KnownMean& mean = region.mean.luminance;
     say("{}: mean luminance {:.6g} +- {:.2g}\n", region.name, mean.mean, mean.interval.upper - mean.mean);

@@ -58,14 +58,6 @@ class GroupDifferences {
   std::vector<float> group_;
 };
 
-RunningStatistics statistics_of(std::span<const float> values) {
-  RunningStatistics statistics{std::int64_t(values.size()), 0, 0, 0};
-  for (const float value : values) statistics.mean += value;
-  statistics.mean /= double(values.size());
-  for (const float value : values) statistics.m2 += (value - statistics.mean) * (value - statistics.mean);
-  return statistics;
-}
-
 /// Which tenth the p-value of the t-test between two halves of a pixel lies in, without computing it.
 class HalvesTest {
  public:

@@ -19,11 +19,7 @@ constexpr int window = (2 * reach + 1) * (2 * reach + 1);
 /// Standard error of the mean luminance.
 double luminance_error(const PixelStatistics& pixel, std::span<const float> replicates) {
   if (replicates.empty()) return luminance(standard_error(pixel));
-  double mean = 0, m2 = 0;
-  for (const float value : replicates) mean += value;
-  mean /= double(replicates.size());
-  for (const float value : replicates) m2 += (value - mean) * (value - mean);
-  return std::sqrt(m2 / double(pixel.count - 1) / double(pixel.count));
+  return statistics_of(replicates).standard_error();
 }
 
 /// What neighbours look at, one row below the other with a margin, where nothing is alike.
@@ -55,7 +51,11 @@ struct Planes {
   float largest = 0;  ///< No channel of a replicate is above it.
 };
 
-constexpr float alike_within = 3;
+/// Of two pixels' means of luminance and the errors of these.
+bool are_alike(float mean_a, float error_a, float mean_b, float error_b) {
+  constexpr float within = 3;  // Standard errors of the noisier one.
+  return std::abs(mean_a - mean_b) <= within * (error_a > error_b ? error_a : error_b);
+}
 
 /// The sum of squared errors of luminance over the alike pixels around those of a row, themselves included.
 struct Pool {
@@ -66,8 +66,7 @@ struct Pool {
     const float *other_mean = &planes.mean[there], *other_error = &planes.error[there];
     float *to_count = count.data(), *to_error_sq = error_sq.data();
     for (std::size_t x = 0; x < count.size(); ++x) {
-      const float noisier = error[x] > other_error[x] ? error[x] : other_error[x];
-      const float is_alike = std::abs(mean[x] - other_mean[x]) <= alike_within * noisier ? 1.0f : 0.0f;
+      const float is_alike = are_alike(mean[x], error[x], other_mean[x], other_error[x]) ? 1.0f : 0.0f;
       to_count[x] += is_alike;
       to_error_sq[x] += is_alike * other_error[x] * other_error[x];
     }
@@ -84,8 +83,8 @@ Color<double> pooled_error(const Planes& planes, const Film& film, int x, int y,
   for (int dy = -side; dy <= side; ++dy)
     for (int dx = -side; dx <= side; ++dx) {
       const std::size_t there = planes.at(x + dx, y + dy);
-      const float noisier = std::max(planes.error[here], planes.error[there]);
-      if (!(std::abs(planes.mean[here] - planes.mean[there]) <= alike_within * noisier)) continue;
+      if (!are_alike(planes.mean[here], planes.error[here], planes.mean[there], planes.error[there]))
+        continue;
       const PixelStatistics& pixel = film.at(x + dx, y + dy);
       sum = sum + pixel.m2 * (1 / (double(pixel.count) * double(pixel.count - 1)));
       ++count;

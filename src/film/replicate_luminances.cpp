@@ -33,4 +33,12 @@ void ReplicateLuminances::add(int x, int y, std::int64_t first, std::span<const 
   for (const Color<double>& mean : means) *at++ = float(luminance(mean));
 }
 
+RunningStatistics statistics_of(std::span<const float> luminances) {
+  RunningStatistics statistics{std::int64_t(luminances.size()), 0, 0, 0};
+  for (const float value : luminances) statistics.mean += value;
+  statistics.mean /= double(luminances.size());
+  for (const float value : luminances) statistics.m2 += (value - statistics.mean) * (value - statistics.mean);
+  return statistics;
+}
+
 }  // namespace etendue

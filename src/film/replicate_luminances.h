@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/color.h"
+#include "stats/running.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -39,5 +40,8 @@ class ReplicateLuminances {
   bool is_kept_ = false;
   std::vector<float> values_;
 };
+
+/// Count, mean and m2 of a pixel's; m3 is 0.
+RunningStatistics statistics_of(std::span<const float> luminances);
 
 }  // namespace etendue

@@ -1,7 +1,6 @@
 #include "render/pilot.h"
 
 #include "base/hash.h"
-#include "film/pixel_intervals.h"
 
 #include <algorithm>
 #include <bit>
@@ -37,17 +36,15 @@ RenderResult render_pilot(const Scene& scene, const RenderSettings& settings, in
 }
 
 /// Of each rendered pixel: half-width over what the goal allows; more than 1 in an image that met no light.
-std::vector<double> over_goal(const RenderResult& result, const ErrorGoal& goal) {
-  const std::vector<PixelInterval> intervals =
-      pixel_intervals(result.film, result.luminances, goal.confidence);
-  const double floor = 0.01 * luminance(result.film.mean());
+std::vector<double> over_goal(const Film& film, std::span<const PixelInterval> intervals,
+                              const ErrorGoal& goal) {
+  const double floor = 0.01 * luminance(film.mean());
   std::vector<double> ratios;
-  for (int y = 0; y < result.film.height(); ++y)
-    for (int x = 0; x < result.film.width(); ++x) {
-      const PixelInterval& interval =
-          intervals[std::size_t(y) * std::size_t(result.film.width()) + std::size_t(x)];
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) {
+      const PixelInterval& interval = intervals[std::size_t(y) * std::size_t(film.width()) + std::size_t(x)];
       if (interval.rule == IntervalRule::unknown) continue;
-      const double allowed = goal.relative * std::max(luminance(result.film.at(x, y).mean), floor);
+      const double allowed = goal.relative * std::max(luminance(film.at(x, y).mean), floor);
       const bool is_reached =
           floor > 0 && (interval.rule == IntervalRule::black || interval.luminance_half_width == 0);
       ratios.push_back(is_reached  ? 0
@@ -59,8 +56,8 @@ std::vector<double> over_goal(const RenderResult& result, const ErrorGoal& goal)
 
 }  // namespace
 
-double share_within(const RenderResult& result, const ErrorGoal& goal) {
-  const std::vector<double> ratios = over_goal(result, goal);
+double share_within(const Film& film, std::span<const PixelInterval> intervals, const ErrorGoal& goal) {
+  const std::vector<double> ratios = over_goal(film, intervals, goal);
   const auto within = std::count_if(ratios.begin(), ratios.end(), [](double ratio) { return ratio <= 1; });
   return ratios.empty() ? 0 : double(within) / double(ratios.size());
 }
@@ -76,7 +73,8 @@ Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, cons
       pilot.samples_per_pixel = samples;
       return pilot;
     }
-    std::vector<double> ratios = over_goal(result, goal);
+    std::vector<double> ratios =
+        over_goal(result.film, pixel_intervals(result.film, result.luminances, goal.confidence), goal);
     const auto of_share =
         ratios.begin() +
         std::clamp<std::ptrdiff_t>(std::ptrdiff_t(std::ceil(goal.share * double(ratios.size()))) - 1, 0,

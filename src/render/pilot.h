@@ -5,7 +5,10 @@
 // random numbers of their own decide, and fresh samples make the image.
 #pragma once
 
+#include "film/pixel_intervals.h"
 #include "render/render.h"
+
+#include <span>
 
 namespace etendue {
 
@@ -27,8 +30,9 @@ struct Pilot {
   bool is_interrupted = false;  ///< Then it tells nothing.
 };
 
-/// Share of the rendered pixels that reach `goal.relative`.
-double share_within(const RenderResult& result, const ErrorGoal& goal);
+/// Share of the rendered pixels that reach `goal.relative`. \param intervals of the film, of
+/// `goal.confidence`
+double share_within(const Film& film, std::span<const PixelInterval> intervals, const ErrorGoal& goal);
 
 /// Samples a pixel that pilots take at the least, and images after them.
 inline constexpr int least_pilot_samples = 16;
