@@ -5,6 +5,7 @@
 #include "generated_scenes.h"
 #include "integrator/single_sample.h"
 #include "lint/probe.h"
+#include "render/pilot.h"
 #include "render/render.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
@@ -53,7 +54,7 @@ struct Setup {
   std::uint64_t seed;
 };
 
-RenderResult render_with(const Scene& scene, const Setup& setup) {
+RenderSettings settings_of(const Setup& setup) {
   RenderSettings settings;
   settings.integrator = integrator_from_name(setup.integrator);
   settings.samples_per_pixel = setup.samples;
@@ -61,8 +62,10 @@ RenderResult render_with(const Scene& scene, const Setup& setup) {
   settings.replicates_by = setup.by;
   settings.seed = setup.seed;
   settings.isa = available_isas().back();
-  return render(scene, settings);
+  return settings;
 }
+
+RenderResult render_with(const Scene& scene, const Setup& setup) { return render(scene, settings_of(setup)); }
 
 template <class Function>
 void for_each_pixel(const Film& film, Function&& f) {
@@ -130,7 +133,13 @@ double median_width(const std::vector<Pixel>& pixels, const std::vector<Width>& 
   return *middle;
 }
 
-void measure(const Scene& scene, const std::string& integrator, int samples, int seeds, double exact) {
+struct Runs {
+  int samples, seeds;
+  bool are_adaptive;
+};
+
+void measure(const Scene& scene, const std::string& integrator, const Runs& runs, double exact) {
+  const auto& [samples, seeds, are_adaptive] = runs;
   const std::vector<Pixel> pixels = look_at(scene, integrator, samples, exact);
   for (const ReplicatesBy by : {ReplicatesBy::block, ReplicatesBy::scrambling})
     for (const int replicates : {4, 8, 16, 32}) {
@@ -139,9 +148,11 @@ void measure(const Scene& scene, const std::string& integrator, int samples, int
       std::array<Coverage, interval_rules> by_rule{};
       std::vector<Width> widths(pixels.size());
       for (int seed = 0; seed < seeds; ++seed) {
-        const RenderResult result =
-            render_with(scene, {integrator, samples, replicates, by, std::uint64_t(seed)});
-        const std::vector<PixelInterval> intervals = pixel_intervals(result.film, result.luminances, 0.95);
+        RenderSettings settings = settings_of({integrator, samples, replicates, by, std::uint64_t(seed)});
+        if (are_adaptive) settings.allocation = allocation_for(scene, settings).allocation;
+        const RenderResult result = render(scene, settings);
+        const std::vector<PixelInterval> intervals =
+            pixel_intervals(result.film, result.luminances, 0.95, settings.allocation_or_null());
         std::array<Count, classes> classes_now{};
         std::array<Count, interval_rules> rules_now{};
         for_each_pixel(result.film, [&](std::size_t i, int x, int y) {
@@ -189,7 +200,7 @@ void measure(const Scene& scene, const std::string& integrator, int samples, int
 }
 
 /// Every pixel sees the same point, whose light is known.
-void measure_exact(const std::string& integrator, int width_px, int samples, int seeds) {
+void measure_exact(const std::string& integrator, int width_px, const Runs& runs) {
   const Vec3d center{-0.4, 0.5, 1}, half_u{0.8, 0.1, 0.2}, half_v{0.1, -0.7, 0.1};
   const LoadedScene loaded =
       load_scene_text(camera_xml({1.5, -2.5, 2}, {0, 0, 0}, 0.001, width_px, "sobol") +
@@ -198,7 +209,7 @@ void measure_exact(const std::string& integrator, int width_px, int samples, int
   const double exact = 0.6 / std::numbers::pi *
                        polygon_irradiance(rectangle_corners(center, half_u, half_v), 3, {0, 0, 0}, {0, 0, 1});
   fmt::print("a point under a rectangle, {} x {} times\n", width_px, width_px);
-  measure(loaded.scene, integrator, samples, seeds, exact);
+  measure(loaded.scene, integrator, runs, exact);
 }
 
 }  // namespace
@@ -206,12 +217,14 @@ void measure_exact(const std::string& integrator, int width_px, int samples, int
 int main(int argc, char** argv) try {
   CLI::App app{"How often intervals hold the true value"};
   std::vector<std::string> files, integrators{"direct_light"};
-  int seeds = 200, width_px = 48, samples = 64;
+  int width_px = 48;
+  Runs runs{.samples = 64, .seeds = 200, .are_adaptive = false};
   app.add_option("SCENE", files, "Scene files; the exact one is measured in any case");
   app.add_option("--integrator", integrators, "May be repeated")->capture_default_str();
-  app.add_option("--seeds", seeds, "Renders of each kind")->capture_default_str();
+  app.add_option("--seeds", runs.seeds, "Renders of each kind")->capture_default_str();
   app.add_option("--width", width_px, "Of the image, in pixels")->capture_default_str();
-  app.add_option("--spp", samples, "Samples a pixel")->capture_default_str();
+  app.add_option("--spp", runs.samples, "Samples a pixel")->capture_default_str();
+  app.add_flag("--adaptive", runs.are_adaptive, "Shared among the pixels by their errors");
   CLI11_PARSE(app, argc, argv);
   fmt::print(
       "share of pixels and seeds whose 95 % interval holds the true value, with a 95 % interval of that "
@@ -219,13 +232,13 @@ int main(int argc, char** argv) try {
       "over seeds; trusted: rules 0 and 1;\nhalf-width over the true error where trusted, in the median "
       "pixel\n");
   for (const std::string& integrator : integrators) {
-    measure_exact(integrator, width_px, samples, seeds);
+    measure_exact(integrator, width_px, runs);
     for (const std::string& file : files) {
       Scene scene = std::move(load_scene(read_nori_xml(file)).scene);
       scene.sampler = SamplerKind::sobol;
       bench::shrink(scene.camera, width_px);
       fmt::print("{}, {} x {}\n", file, scene.camera.width_px, scene.camera.height_px);
-      measure(scene, integrator, samples, seeds, 0);
+      measure(scene, integrator, runs, 0);
     }
   }
 } catch (const std::exception& error) {

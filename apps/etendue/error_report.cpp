@@ -1,7 +1,7 @@
 #include "error_report.h"
 
 #include "messages.h"
-#include "sample_count.h"
+#include "pilots.h"
 
 #include <algorithm>
 #include <array>
@@ -106,8 +106,9 @@ void add_error_stats(const Rendering& rendering, nlohmann::ordered_json& json) {
         double(std::count_if(widths.begin(), widths.end(), [](double width) { return width < 0.01; })) /
         double(rendering.pixels());
   }
-  if (rendering.pilot) {
-    error["pilot"] = {{"seconds", rendering.pilot->seconds}, {"samples", rendering.pilot->samples}};
+  if (rendering.pilots.samples) {
+    error["pilot"] = {{"seconds", rendering.pilots.samples->seconds},
+                      {"samples", rendering.pilots.samples->samples}};
     if (const std::optional<ErrorGoal> goal = error_goal(rendering.options))
       error["goal"] = {{"relative", goal->relative},
                        {"share", goal->share},

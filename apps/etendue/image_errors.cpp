@@ -2,9 +2,10 @@
 
 namespace etendue::app {
 
-ImageErrors errors_of(const RenderResult& result, const std::vector<Region>& regions, double confidence) {
+ImageErrors errors_of(const RenderResult& result, const RenderSettings& settings,
+                      const std::vector<Region>& regions, double confidence) {
   const Film& film = result.film;
-  ImageErrors errors{pixel_intervals(film, result.luminances, confidence), {}};
+  ImageErrors errors{pixel_intervals(film, result.luminances, confidence, settings.allocation_or_null()), {}};
   const auto add = [&](const Region& region) {
     errors.regions.push_back({region.name, region_mean(film, errors.intervals, region.pixels, confidence),
                               convergence_checks(film, result.luminances, region.pixels)});

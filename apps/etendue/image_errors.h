@@ -23,6 +23,7 @@ struct ImageErrors {
   std::vector<RegionErrors> regions;     ///< The whole, named "image", and those asked for.
 };
 
-ImageErrors errors_of(const RenderResult& result, const std::vector<Region>& regions, double confidence);
+ImageErrors errors_of(const RenderResult& result, const RenderSettings& settings,
+                      const std::vector<Region>& regions, double confidence);
 
 }  // namespace etendue::app

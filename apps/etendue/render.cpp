@@ -5,12 +5,12 @@
 #include "interrupt.h"
 #include "messages.h"
 #include "output_files.h"
+#include "pilots.h"
 #include "progress.h"
 #include "render/check_settings.h"
 #include "render/thread_limit.h"
 #include "render_outputs.h"
 #include "replay.h"
-#include "sample_count.h"
 #include "scenefile/nori_xml.h"
 #include "scenefile/scene_files.h"
 
@@ -66,8 +66,9 @@ int run(const RenderOptions& options) {
   LoadedScene loaded = load_scene(description, loading);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
-  settings.integrator = settled(
-      integrator_for(options.integrator, loaded, description.dialect, loaded.warnings), loaded.scene.lights);
+  const IntegratorSettings asked_for =
+      integrator_for(options.integrator, loaded, description.dialect, loaded.warnings);
+  settings.integrator = settled(asked_for, loaded.scene.lights);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   const std::vector<Region> regions =
       regions_of(options.regions, loaded.scene.camera.width_px, loaded.scene.camera.height_px);
@@ -85,6 +86,13 @@ int run(const RenderOptions& options) {
     loaded = load_scene(description, loading);
     loaded.scene.sampler = sampler;
   }
+  settings.integrator = asked_for;
+  catch_signals(LaterSignals::hurry);
+  const Pilots pilots = settle_by_pilots(options, loaded.scene, settings);
+  if (pilots.is_interrupted) {
+    say("interrupted before the image was begun: no file was written\n");
+    return interrupted;
+  }
   if (!options.replay.empty()) {
     const SampleId sample = sample_id_from_text(options.replay);
     if (!options.outputs.empty() || !options.stats_file.empty())
@@ -93,18 +101,12 @@ int run(const RenderOptions& options) {
     return done;
   }
   const std::uint64_t hash = scene_hash(description);
-  catch_signals(LaterSignals::hurry);
-  const std::optional<Pilot> pilot = settle_samples(options, loaded.scene, settings);
-  if (pilot && pilot->is_interrupted) {
-    say("interrupted before the image was begun: no file was written\n");
-    return interrupted;
-  }
   subject.samples_per_pixel = settings.samples_per_pixel;
   announce(options, description, loaded, settings);
   RenderResult rendered = render_with_progress(loaded.scene, settings, options.is_quiet);
-  ImageErrors errors = errors_of(rendered, regions, options.confidence);
+  ImageErrors errors = errors_of(rendered, settings, regions, options.confidence);
   const Rendering rendering{options,           description, loaded, settings, hash, std::move(rendered),
-                            std::move(errors), pilot};
+                            std::move(errors), pilots};
   const RenderResult& result = rendering.result;
   const WrittenFiles written = write_outputs(rendering);
   report_invalid(rendering);

@@ -89,14 +89,15 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
                      "Where on a light its samples lie, instead of the integrator's way: area, "
                      "solid_angle, projected, ltc or auto");
   command
-      .add_option("--candidates", options.candidates,
-                  "Of how many candidates each light sample at the first vertex is one, chosen by what they "
-                  "would add; 1 to 1024 [path, direct_light: what suits the scene's lights; others: 1]")
+      .add_option(
+          "--candidates", options.candidates,
+          "Of how many candidates each light sample at the first vertex is one, chosen by what they "
+          "would add; 1 to 1024 [path, direct_light: what a pilot finds to suit the scene; others: 1]")
       ->check(number);
   command
       .add_option("--shadow-rays", options.shadow_rays,
                   "Light samples at the first vertex, each with a shadow ray; 1 to 65536 "
-                  "[direct_light: 4; others: 1, or as the keys of the file say]")
+                  "[path, direct_light: 1 or 4, as a pilot finds; others: 1, or as the keys of the file say]")
       ->check(number);
   command.add_option("--weights", options.heuristic,
                      "How light samples and BSDF samples share light that both find: balance or power "
@@ -149,6 +150,12 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->check(positive())
       ->excludes(replicates)
       ->excludes(spp)
+      ->excludes(error);
+  command
+      .add_flag(
+          "--adaptive", options.is_adaptive,
+          "Share the samples of --spp (then an average, 16 at least) or --time among the pixels by their "
+          "errors, which a pilot of an eighth of them tells")
       ->excludes(error);
   command
       .add_option("--region", options.regions,
@@ -211,6 +218,7 @@ std::string replay_command(const RenderOptions& options, const InvalidSample& sa
   if (integrator.shadow_rays) add("--shadow-rays", *integrator.shadow_rays);
   if (!integrator.heuristic.empty()) add("--weights", integrator.heuristic);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
+  if (options.is_adaptive) command += " --adaptive";
   if (options.replicates) add("--replicates", *options.replicates);
   if (!options.replicates_by.empty()) add("--replicates-by", options.replicates_by);
   if (options.run.seed != 0) add("--seed", options.run.seed);

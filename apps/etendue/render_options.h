@@ -29,7 +29,8 @@ struct RenderOptions {
   double share_within = 0.99;                     ///< Of the pixels, for relative_error.
   IntegratorOptions integrator;
   RunOptions run;
-  bool is_quiet = false, is_strict = false, is_in_sample_order = false, is_watertight = false;
+  bool is_quiet = false, is_strict = false, is_in_sample_order = false, is_watertight = false,
+       is_adaptive = false;
 };
 
 /// Adds --integrator and the options that change it. `options` must live as long as the command.

@@ -89,6 +89,17 @@ std::vector<Pixel> dark_pixels(const Film& film) {
   return dark;
 }
 
+/// What a pilot has tried, and how efficient each is relative to the usual budget.
+nlohmann::ordered_json stats_of(const BudgetPilot& pilot) {
+  nlohmann::ordered_json tried = nlohmann::ordered_json::array();
+  for (const TriedBudget& each : pilot.tried)
+    tried.push_back({{"light_samples", each.budget.light_samples},
+                     {"candidates", each.budget.candidates},
+                     {"error", each.error},
+                     {"relative_efficiency", each.efficiency() / pilot.tried.front().efficiency()}});
+  return {{"pilot_seconds", pilot.seconds}, {"tried", tried}};
+}
+
 }  // namespace
 
 std::int64_t Rendering::pixels_rendered() const {
@@ -96,6 +107,11 @@ std::int64_t Rendering::pixels_rendered() const {
   for (int y = 0; y < result.film.height(); ++y)
     for (int x = 0; x < result.film.width(); ++x) count += result.film.at(x, y).count > 0;
   return count;
+}
+
+int Rendering::samples_per_pixel() const {
+  if (!settings.allocation) return result.replicates * settings.samples_per_replicate();
+  return int(std::lround(result.replicates * settings.allocation->mean()));
 }
 
 const PathRules* Rendering::light_rules() const {
@@ -122,8 +138,15 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   json["light_samples"] = rules ? rules->light_count(0) : 0;
   json["candidates"] = rules ? rules->candidates(0) : 0;
   json["glossy_candidates"] = rules ? rules->glossy_candidates(0) : 0;
+  if (const auto& pilot = rendering.pilots.budget) json["light_budget"] = stats_of(*pilot);
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = rendering.samples_per_pixel();
+  if (const auto& allocation = settings.allocation)
+    json["adaptive"] = {{"pilot_samples_per_pixel", rendering.pilots.allocation->samples_per_pixel},
+                        {"pilot_seconds", rendering.pilots.allocation->seconds},
+                        {"least_samples_per_pixel", std::int64_t(result.replicates) * allocation->least()},
+                        {"most_samples_per_pixel", std::int64_t(result.replicates) * allocation->most()},
+                        {"mean_samples_per_pixel", result.replicates * allocation->mean()}};
   json["replicates"] = result.replicates;
   json["replicates_by"] = replicates_by_name(settings.replicates_by);
   json["seed"] = settings.seed;
@@ -176,7 +199,7 @@ void report_invalid(const Rendering& rendering) {
   if (const std::string object = object_of_invalid(rendering); !object.empty())
     say("the first went wrong at {}\n", object);
   RenderOptions options = rendering.options;
-  if (rendering.pilot) options.samples_per_pixel = rendering.settings.samples_per_pixel;
+  if (rendering.pilots.samples) options.samples_per_pixel = rendering.settings.samples_per_pixel;
   say("to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
       replay_command(options, result.invalid.first().front()));
 }

@@ -3,7 +3,7 @@
 
 #include "image_errors.h"
 #include "lint/lint.h"
-#include "render/pilot.h"
+#include "pilots.h"
 #include "render_options.h"
 #include "scenefile/scene_desc.h"
 
@@ -22,9 +22,10 @@ struct Rendering {
   std::uint64_t scene_hash;
   RenderResult result;
   ImageErrors errors;
-  std::optional<Pilot> pilot;  ///< Where it settled the number of samples.
+  Pilots pilots;
 
-  int samples_per_pixel() const { return result.replicates * settings.samples_per_replicate(); }
+  /// On average, rounded, where pixels differ.
+  int samples_per_pixel() const;
   std::int64_t pixels() const { return std::int64_t(result.film.width()) * result.film.height(); }
   std::int64_t pixels_rendered() const;
   const PathRules* light_rules() const;  ///< Null where lights are not sampled.

@@ -11,6 +11,7 @@ import numpy as np
 import OpenEXR
 
 HERE = Path(__file__).resolve().parent
+ADAPTIVE = "adaptive"  # a setting of Etendue
 
 
 @dataclass(frozen=True)
@@ -28,11 +29,14 @@ class Etendue:
         self.program, self.cores, self.folder = program, cores, folder
 
     def settings(self, scene):
-        """Without any option but the integrator; beside it the textbook's methods, which are no default."""
+        """First without any option but the integrator; then with samples shared among the pixels; then the textbook's
+        methods, which are no default."""
         info = subprocess.run([self.program, "info", "--json"], check=True, capture_output=True, text=True).stdout
         known = [integrator["name"] for integrator in json.loads(info)["integrators"]]
         names = ("path", "path_mis") if scene.is_by_paths else ("direct_light", "light", "mis")
-        return {name: ["--integrator", name] for name in names if name in known}
+        methods = {name: ["--integrator", name] for name in names if name in known}
+        adaptive = {ADAPTIVE: [*methods[names[0]], "--adaptive"]}
+        return {names[0]: methods[names[0]], **adaptive, **methods}
 
     def render(self, name, setting, seed, spp):
         image, stats = self.folder / "image.exr", self.folder / "stats.json"
@@ -48,7 +52,8 @@ class Etendue:
         wall = time.perf_counter() - started
         if process.returncode != 0:
             raise RuntimeError(f"{' '.join(command)}:\n{said}")
-        seconds = json.loads(stats.read_text())["seconds_render"]
+        told = json.loads(stats.read_text())
+        seconds = told["seconds_render"] + told.get("adaptive", {}).get("pilot_seconds", 0)
         if len(self.cores) == 1:  # Without the time for which other programs had the core.
             seconds *= min(1.0, (usage.ru_utime + usage.ru_stime) / wall)
         return Run(read_exr(image), seconds)

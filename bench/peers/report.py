@@ -11,6 +11,7 @@ import numpy as np
 from PIL import Image
 
 from efficiency import Estimate
+from renderers import ADAPTIVE
 from scenes import SCENES
 
 matplotlib.use("svg")
@@ -90,17 +91,18 @@ def standing(results):
 
 def table(results):
     lines = ["| scene | spp | renderer and setting | million samples/s | relative variance × spp | efficiency | "
-             "Etendue's over it | robust |", "|---|---|---|---|---|---|---|---|"]
+             "Etendue's over it | robust | with `--adaptive` | robust |", "|---|---|---|---|---|---|---|---|---|---|"]
     for result in results:
         for spp, rows in result["budgets"].items():
+            adaptive = [row for row in rows if row["setting"] == ADAPTIVE]
             for row in rows:
-                if row["renderer"] == "Etendue" and row is not rows[0]:
+                if row["renderer"] == "Etendue" and row is not rows[0] and row not in adaptive:
                     continue
-                over = "| |"
-                if row is not rows[0]:
-                    over = "| void | void |" if row["agreement"]["void"] else (
-                        f"| {interval(ratio(rows[0], row, 'efficiency'))} "
-                        f"| {interval(ratio(rows[0], row, 'robust_efficiency'))} |")
+                over = "| | | | |"
+                if row["renderer"] != "Etendue":
+                    over = "".join(f"| {interval(ratio(ours, row, key))} " if not row["agreement"]["void"] else "| void "
+                                   for ours in [rows[0], *adaptive]
+                                   for key in ("efficiency", "robust_efficiency")) + "|" + " |" * 2 * (not adaptive)
                 lines.append(f"| {result['scene']} | {spp} | {row['renderer']}: {row['setting']} "
                              f"| {figure(row['msamples_per_second'])} | {figure(row['variance_times_spp'][0])} "
                              f"| {figure(row['efficiency'][0])} {over}")

@@ -24,10 +24,12 @@ double luminance_error(const PixelStatistics& pixel, std::span<const float> repl
 
 /// What neighbours look at, one row below the other with a margin, where nothing is alike.
 struct Planes {
-  Planes(const Film& film, const ReplicateLuminances& luminances)
+  Planes(const Film& film, const ReplicateLuminances& luminances, const SampleAllocation* allocation)
       : stride(film.width() + 2 * reach),
         mean(std::size_t(stride) * std::size_t(film.height() + 2 * reach), nan),
-        error(mean.size(), 0.0f) {
+        error(mean.size(), 0.0f),
+        spread(mean.size(), 0.0f),
+        samples_per_replicate(mean.size(), 1.0f) {
     for (int y = 0; y < film.height(); ++y)
       for (int x = 0; x < film.width(); ++x) {
         const PixelStatistics& pixel = film.at(x, y);
@@ -35,10 +37,12 @@ struct Planes {
         const std::size_t i = at(x, y);
         mean[i] = float(luminance(pixel.mean));
         error[i] = float(luminance_error(pixel, luminances.at(x, y, pixel.count)));
+        if (allocation) samples_per_replicate[i] = float(allocation->at(x, y));
+        spread[i] = error[i] * std::sqrt(samples_per_replicate[i]);
         replicates = std::max(replicates, pixel.count);
-        largest = std::max({largest, float(pixel.mean.r + std::sqrt(pixel.m2.r)),
-                            float(pixel.mean.g + std::sqrt(pixel.m2.g)),
-                            float(pixel.mean.b + std::sqrt(pixel.m2.b))});
+        const Color<double> most{pixel.mean.r + std::sqrt(pixel.m2.r), pixel.mean.g + std::sqrt(pixel.m2.g),
+                                 pixel.mean.b + std::sqrt(pixel.m2.b)};
+        largest = std::max(largest, samples_per_replicate[i] * float(std::max({most.r, most.g, most.b})));
       }
   }
   std::size_t at(int x, int y) const {
@@ -47,8 +51,10 @@ struct Planes {
 
   int stride;
   std::vector<float> mean, error;  ///< Of luminance; not a number where there is no error.
+  std::vector<float> spread;  ///< The error if a replicate were one sample, as errors fall with the root.
+  std::vector<float> samples_per_replicate;
   std::int64_t replicates = 2;
-  float largest = 0;  ///< No channel of a replicate is above it.
+  float largest = 0;  ///< No channel of a replicate, times its samples, is above it.
 };
 
 /// Of two pixels' means of luminance and the errors of these.
@@ -57,25 +63,29 @@ bool are_alike(float mean_a, float error_a, float mean_b, float error_b) {
   return std::abs(mean_a - mean_b) <= within * (error_a > error_b ? error_a : error_b);
 }
 
-/// The sum of squared errors of luminance over the alike pixels around those of a row, themselves included.
+/// The sum of squared spreads of luminance over the alike pixels around those of a row, themselves included.
 struct Pool {
-  explicit Pool(int width) : count(std::size_t(width)), error_sq(count.size()) {}
+  explicit Pool(int width) : count(std::size_t(width)), spread_sq(count.size()) {}
   void add(const Planes& planes, int y, int dx, int dy) {
     const std::size_t here = planes.at(0, y), there = planes.at(dx, y + dy);
     const float *mean = &planes.mean[here], *error = &planes.error[here];
-    const float *other_mean = &planes.mean[there], *other_error = &planes.error[there];
-    float *to_count = count.data(), *to_error_sq = error_sq.data();
+    const float *other_mean = &planes.mean[there], *other_error = &planes.error[there],
+                *other_spread = &planes.spread[there];
+    float *to_count = count.data(), *to_spread_sq = spread_sq.data();
     for (std::size_t x = 0; x < count.size(); ++x) {
       const float is_alike = are_alike(mean[x], error[x], other_mean[x], other_error[x]) ? 1.0f : 0.0f;
       to_count[x] += is_alike;
-      to_error_sq[x] += is_alike * other_error[x] * other_error[x];
+      to_spread_sq[x] += is_alike * other_spread[x] * other_spread[x];
     }
   }
-  float error(std::size_t x) const { return std::sqrt(error_sq[x] / count[x]); }
-  std::vector<float> count, error_sq;
+  /// Of a pixel of the row that takes so many samples a replicate.
+  float error(std::size_t x, float samples_per_replicate) const {
+    return std::sqrt(spread_sq[x] / (count[x] * samples_per_replicate));
+  }
+  std::vector<float> count, spread_sq;
 };
 
-/// The root of the mean squared error of each channel over the alike pixels within `side` of one.
+/// The error of each channel by the alike pixels within `side` of one: the root of their mean squared spread.
 Color<double> pooled_error(const Planes& planes, const Film& film, int x, int y, int side) {
   Color<double> sum{0, 0, 0};
   double count = 0;
@@ -86,7 +96,9 @@ Color<double> pooled_error(const Planes& planes, const Film& film, int x, int y,
       if (!are_alike(planes.mean[here], planes.error[here], planes.mean[there], planes.error[there]))
         continue;
       const PixelStatistics& pixel = film.at(x + dx, y + dy);
-      sum = sum + pixel.m2 * (1 / (double(pixel.count) * double(pixel.count - 1)));
+      const double more_samples =
+          double(planes.samples_per_replicate[there]) / double(planes.samples_per_replicate[here]);
+      sum = sum + pixel.m2 * (more_samples / (double(pixel.count) * double(pixel.count - 1)));
       ++count;
     }
   return {std::sqrt(sum.r / count), std::sqrt(sum.g / count), std::sqrt(sum.b / count)};
@@ -95,11 +107,11 @@ Color<double> pooled_error(const Planes& planes, const Film& film, int x, int y,
 }  // namespace
 
 std::vector<PixelInterval> pixel_intervals(const Film& film, const ReplicateLuminances& luminances,
-                                           double confidence) {
+                                           double confidence, const SampleAllocation* allocation) {
   if (!(confidence > 0 && confidence < 1))
     throw std::domain_error("pixel_intervals: the confidence must lie in (0, 1)");
   constexpr float own_holds_from = 0.75f, near_holds_from = 0.5f;
-  const Planes planes(film, luminances);
+  const Planes planes(film, luminances, allocation);
   std::array<float, window + 1> quantiles{};  // By the number of pixels in the pool.
   for (int pixels = 1; pixels <= window; ++pixels)
     quantiles[std::size_t(pixels)] =
@@ -120,11 +132,13 @@ std::vector<PixelInterval> pixel_intervals(const Film& film, const ReplicateLumi
         interval = {{nan, nan, nan}, nan, nan, IntervalRule::unknown};
         continue;
       }
-      const float own = planes.error[at], near_error = near.error(x), wide_error = wide.error(x);
+      const float samples = planes.samples_per_replicate[at];
+      const float own = planes.error[at], near_error = near.error(x, samples),
+                  wide_error = wide.error(x, samples);
       interval.luminance_error = own;
       if (planes.mean[at] == 0 && wide_error == 0) {
-        const float most =
-            float(-std::log(1 - confidence)) * planes.largest / (float(planes.replicates) * wide.count[x]);
+        const float most = float(-std::log(1 - confidence)) * planes.largest /
+                           (samples * float(planes.replicates) * wide.count[x]);
         interval = {{most, most, most}, most, own, IntervalRule::black};
         continue;
       }
@@ -143,7 +157,8 @@ std::vector<PixelInterval> pixel_intervals(const Film& film, const ReplicateLumi
       interval.half_width = {std::max(of_own.r, quantile * float(pooled.r)),
                              std::max(of_own.g, quantile * float(pooled.g)),
                              std::max(of_own.b, quantile * float(pooled.b))};
-      interval.luminance_half_width = std::max(interval.luminance_half_width, quantile * pool.error(x));
+      interval.luminance_half_width =
+          std::max(interval.luminance_half_width, quantile * pool.error(x, samples));
     }
   }
   return intervals;

@@ -3,6 +3,7 @@
 
 #include "film/film.h"
 #include "film/replicate_luminances.h"
+#include "film/sample_allocation.h"
 
 #include <cstdint>
 #include <vector>
@@ -43,7 +44,9 @@ struct PixelInterval {
 /// \param luminances of the film's replicates; without them the error of the luminance is taken as that of
 ///   channels that go together, its upper bound
 /// \param confidence in (0, 1), else std::domain_error
+/// \param allocation of the film, where pixels took different numbers of samples: an error of neighbours is
+///   then that which they would have with as many samples as the pixel
 std::vector<PixelInterval> pixel_intervals(const Film& film, const ReplicateLuminances& luminances,
-                                           double confidence);
+                                           double confidence, const SampleAllocation* allocation = nullptr);
 
 }  // namespace etendue

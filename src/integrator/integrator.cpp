@@ -312,18 +312,37 @@ IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::str
 
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights) {
   const PathRules* rules = integrator.path_rules();
-  if (!rules || !rules->light_samples() || rules->light_samples()->candidates > 0) return integrator;
-  std::int64_t facets = 0;
-  for (std::int32_t light = 0; light < lights.count(); ++light) facets += lights.facet_count(light);
+  if (!has_open_light_budget(integrator)) return integrator;
+  const std::int64_t facets = facet_count(lights);
   // Where the cut of a tile holds each facet by itself, points stay better distributed without a choice among
   // candidates than it could make them, unless lobes are narrow.
   const bool are_all_in_cut = facets <= LightCut::most_clusters;
-  constexpr int few = 4, several = 8, many = 16;
+  constexpr int several = 8, many = 16;
   constexpr std::int64_t swarm = 1 << 16;  // Of facets: there a shadow ray takes as long as many candidates.
-  LightSamples samples = *rules->light_samples();
-  samples.candidates = are_all_in_cut ? 1 : facets <= swarm ? several : many;
-  samples.glossy_candidates = std::max(samples.candidates, few);
-  return {integrator.name, rules->with_light_samples(samples)};
+  return with_light_budget(integrator, {.light_samples = rules->light_count(0),
+                                        .candidates = are_all_in_cut    ? 1
+                                                      : facets <= swarm ? several
+                                                                        : many});
+}
+
+LightBudget light_budget(const IntegratorSettings& integrator) {
+  const PathRules& rules = *integrator.path_rules();
+  return {rules.light_count(0), rules.candidates(0)};
+}
+
+bool has_open_light_budget(const IntegratorSettings& integrator) {
+  const PathRules* rules = integrator.path_rules();
+  return rules && rules->light_samples() && rules->light_samples()->candidates == 0;
+}
+
+IntegratorSettings with_light_budget(const IntegratorSettings& integrator, const LightBudget& budget) {
+  constexpr int fewest_glossy = 4;
+  LightSamples samples = light_samples_of(integrator, "a budget of light samples");
+  if (samples.later_count == 0) samples.later_count = samples.count;
+  samples.count = budget.light_samples;
+  samples.candidates = budget.candidates;
+  samples.glossy_candidates = std::max(budget.candidates, fewest_glossy);
+  return {integrator.name, integrator.path_rules()->with_light_samples(samples)};
 }
 
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights) {

@@ -68,6 +68,20 @@ IntegratorSettings with_light_technique(const IntegratorSettings& integrator, st
 /// by whether surfaces are diffuse (docs/light_sampling.md).
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights);
 
+/// What the first vertex of a path takes: light samples, and of how many candidates each is one where
+/// surfaces are diffuse; where they are not, of four at least.
+struct LightBudget {
+  int light_samples, candidates;
+  friend bool operator==(const LightBudget&, const LightBudget&) = default;
+};
+/// Of a settled integrator that samples lights.
+LightBudget light_budget(const IntegratorSettings& integrator);
+/// Whether it leaves its candidates to the scene.
+bool has_open_light_budget(const IntegratorSettings& integrator);
+/// The same with this budget; vertices behind the first take as many light samples as before. Throws
+/// InputError where the integrator samples no lights.
+IntegratorSettings with_light_budget(const IntegratorSettings& integrator, const LightBudget& budget);
+
 /// Over the lights of a scene, which it may not outlive; where the integrator samples none, any.
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights);
 

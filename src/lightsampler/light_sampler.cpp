@@ -47,6 +47,12 @@ const std::vector<Plugin>& light_sampler_plugins() {
 
 std::string_view known_light_sampler(std::string_view name) { return row_named(name).name; }
 
+std::int64_t facet_count(const Lights& lights) {
+  std::int64_t facets = 0;
+  for (std::int32_t light = 0; light < lights.count(); ++light) facets += lights.facet_count(light);
+  return facets;
+}
+
 LightSampler make_light_sampler(std::string_view name, const Lights& lights) {
   return row_named(name).make(lights);
 }

@@ -26,7 +26,7 @@ void check_settings(const RenderSettings& settings) {
     throw InputError(fmt::format("{} samples a pixel; at least 1 is needed", settings.samples_per_pixel));
   const int replicates = settings.replicate_count();
   if (replicates < 1) throw InputError(fmt::format("{} replicates; at least 1 is needed", replicates));
-  if (settings.samples_per_pixel % replicates != 0)
+  if (!settings.allocation && settings.samples_per_pixel % replicates != 0)
     throw InputError(fmt::format("{} samples a pixel cannot be split into {} equal replicates\n{}",
                                  settings.samples_per_pixel, replicates,
                                  advice(settings.samples_per_pixel, replicates)));

@@ -129,7 +129,7 @@ struct Passes::Threads {
           film.add(x, y, of_pixel);
           if (luminances && &film == &films.front()) luminances->add(x, y, tile.first_replicate, of_pixel);
         }
-    worker.counts.samples += tile.samples_per_pixel() * tile.pixels.width() * tile.pixels.height();
+    worker.counts.samples += tile.samples();
     worker.counts += worker.block->counts;
     worker.invalid.add(worker.invalid_of_tile);
     return true;
@@ -192,9 +192,13 @@ PassResult Passes::render(std::vector<FilmStack>& films, int end, ReplicateLumin
   Threads& threads = *threads_;
   const FilmStack& film = films.front();
   const int first = int(film.last());
-  const std::vector<WorkUnit> tiles = tiles_of(
-      {{0, 0, film.width(), film.height()}, first, end - first, threads.settings.samples_per_replicate()},
-      threads.count);
+  const std::vector<WorkUnit> tiles =
+      tiles_of({.pixels = {0, 0, film.width(), film.height()},
+                .first_replicate = first,
+                .replicates = end - first,
+                .samples_per_replicate = threads.settings.samples_per_replicate(),
+                .allocation = threads.settings.allocation_or_null()},
+               threads.count);
   const bool is_first_pass = film.last() == film.first();
   const Clock::time_point start = Clock::now();
   const bool is_needed = film.last() - film.first() < 2;  // One replicate alone has no error bar.

@@ -1,12 +1,15 @@
 #include "render/pilot.h"
 
+#include "base/error.h"
 #include "base/hash.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <fmt/format.h>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace etendue {
@@ -21,14 +24,20 @@ int rounded_up(double samples, int most) {
   return std::max(least_pilot_samples, std::min(int(std::ceil(wanted / step)), most / step) * step);
 }
 
-RenderResult render_pilot(const Scene& scene, const RenderSettings& settings, int samples, Pilot& pilot,
-                          const StopRequest* stop) {
+/// With random numbers of its own, as `purpose` says.
+RenderResult render_with(const Scene& scene, const RenderSettings& settings, int samples,
+                         std::uint64_t purpose, const StopRequest* stop) {
   RenderSettings of_pilot = settings;
   of_pilot.samples_per_pixel = samples;
   of_pilot.replicates.reset();
   of_pilot.layers.clear();
-  of_pilot.seed = hash64(settings.seed ^ hash64(std::uint64_t(samples)));
-  RenderResult result = render(scene, of_pilot, {}, stop);
+  of_pilot.seed = hash64(settings.seed ^ hash64(purpose));
+  return render(scene, of_pilot, {}, stop);
+}
+
+RenderResult render_pilot(const Scene& scene, const RenderSettings& settings, int samples, Pilot& pilot,
+                          const StopRequest* stop) {
+  RenderResult result = render_with(scene, settings, samples, std::uint64_t(samples), stop);
   pilot.samples += result.counts.samples;
   pilot.seconds += result.seconds;
   pilot.is_interrupted = result.is_interrupted;
@@ -105,6 +114,39 @@ Pilot samples_for_time(const Scene& scene, const RenderSettings& settings, doubl
     if (pilot.seconds >= share_of_pilot * seconds || samples >= most / 2) return pilot;
     samples = rounded_up(std::min(samples * largest_growth, share_of_pilot * seconds / of_sample), most / 2);
   }
+}
+
+AllocationPilot allocation_for(const Scene& scene, const RenderSettings& settings, const StopRequest* stop) {
+  constexpr std::uint64_t purpose = 0x5ca1ab1e;
+  constexpr int least = 4, most = 32;
+  constexpr double confidence = 0.95;
+  constexpr float share_of_mean = 0.25f;
+  const int samples = settings.samples_per_pixel;
+  AllocationPilot pilot;
+  pilot.replicates = settings.replicates.value_or(default_replicates(int(std::bit_floor(unsigned(samples)))));
+  pilot.samples_per_pixel = std::clamp(int(std::bit_floor(unsigned(samples) / 8)), least, most);
+  const int left = samples - pilot.samples_per_pixel;
+  if (samples < least_pilot_samples || left < pilot.replicates)
+    throw InputError(fmt::format(
+        "{} samples a pixel, of which a pilot takes {}, are too few to be shared among pixels of {} "
+        "replicates; at least {} are needed",
+        samples, pilot.samples_per_pixel, pilot.replicates,
+        std::max(least_pilot_samples, pilot.replicates + (pilot.replicates + 6) / 7)));
+  const RenderResult result = render_with(scene, settings, pilot.samples_per_pixel, purpose, stop);
+  pilot.seconds = result.seconds;
+  if (result.is_interrupted) return pilot;
+  std::vector<float> widths;
+  for (const PixelInterval& interval : pixel_intervals(result.film, result.luminances, confidence))
+    widths.push_back(interval.rule == IntervalRule::black ? 0 : interval.luminance_half_width);
+  const float everywhere =
+      share_of_mean * float(std::accumulate(widths.begin(), widths.end(), 0.0) / double(widths.size()));
+  for (float& width : widths) width += everywhere;
+  const PathRules* rules = settings.integrator.path_rules();
+  const std::int64_t most_numbers = (std::int64_t(1) << 30) / (rules ? rules->most_samples() : 1);
+  const std::int64_t most_of_replicate = std::max<std::int64_t>(most_numbers / pilot.replicates, 1);
+  pilot.allocation = allocate(result.film.width(), widths, double(left) / pilot.replicates,
+                              int(std::bit_floor(std::uint64_t(most_of_replicate))));
+  return pilot;
 }
 
 }  // namespace etendue

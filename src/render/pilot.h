@@ -30,6 +30,14 @@ struct Pilot {
   bool is_interrupted = false;  ///< Then it tells nothing.
 };
 
+/// Where samples count most, as a pilot has told.
+struct AllocationPilot {
+  std::optional<SampleAllocation> allocation;  ///< None where the pilot was interrupted.
+  int replicates = 0;                          ///< Of the image that the allocation is for.
+  int samples_per_pixel = 0;                   ///< Of the pilot, which are thrown away.
+  double seconds = 0;
+};
+
 /// Share of the rendered pixels that reach `goal.relative`. \param intervals of the film, of
 /// `goal.confidence`
 double share_within(const Film& film, std::span<const PixelInterval> intervals, const ErrorGoal& goal);
@@ -47,5 +55,14 @@ Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, cons
 /// of it; at least 16.
 Pilot samples_for_time(const Scene& scene, const RenderSettings& settings, double seconds, int most,
                        const StopRequest* stop = nullptr);
+
+/// Shares settings.samples_per_pixel (16 at least) among the pixels, so that the sum of their variances comes
+/// out small. A pilot takes an eighth of them, 4 to 32. What is left goes to the pixels in proportion to
+/// their half-widths (pixel_intervals, so pooled over alike pixels around) and a quarter of the image's mean
+/// half-width, for what the pilot has not met; each takes one sample a replicate at least. A sample is taken
+/// to cost the same everywhere. Replicates unless given are as many as for a power of two of samples. Throws
+/// InputError where there are too few samples for the replicates.
+AllocationPilot allocation_for(const Scene& scene, const RenderSettings& settings,
+                               const StopRequest* stop = nullptr);
 
 }  // namespace etendue

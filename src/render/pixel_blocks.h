@@ -1,26 +1,22 @@
-// A tile as a sequence of blocks: many samples of one pixel, or few of each pixel of a small square.
+// A tile as a sequence of blocks: many samples of one pixel, or few of each of some pixels close together.
 #pragma once
 
 #include "integrator/sample_block.h"
 #include "render/kernel.h"
+#include "render/pixel_order.h"
 #include "render/replicate_sum.h"
 #include "sampler/replicates.h"
 
 #include <algorithm>
+#include <bit>
+#include <span>
 #include <vector>
 
 namespace etendue {
 
 class PixelBlocks {
  public:
-  explicit PixelBlocks(const TileJob& job)
-      : job_(job),
-        area_(job.unit.pixels),
-        samples_(int(job.unit.samples_per_pixel())),
-        per_replicate_(job.unit.samples_per_replicate),
-        x_(area_.x_begin),
-        y_(area_.y_begin) {
-    while (samples_ <= block_capacity / (2 * width_ * height_)) (width_ > height_ ? height_ : width_) *= 2;
+  explicit PixelBlocks(const TileJob& job) : job_(job), pixels_(pixels_in_order(job.unit)) {
     const std::size_t images = 1 + job.settings->layers.size();
     job.means->resize(images * image_size());
     sums_.resize(images);
@@ -34,16 +30,18 @@ class PixelBlocks {
 
   /// Fills in who the next block's samples are; false at the end of the tile.
   bool next(SampleBlock& block) {
-    if (y_ >= area_.y_end) return false;
-    pixels_.clear();
-    for (int k = 0; k < width_ * height_; ++k) {
-      const Pixel pixel{x_ + even_bits(k), y_ + even_bits(k >> 1)};
-      if (pixel.x < area_.x_end && pixel.y < area_.y_end) pixels_.push_back(pixel);
-    }
-    block.is_one_pixel = pixels_.size() == 1;
+    if (first_pixel_ == pixels_.size()) return false;
+    per_replicate_ = pixels_[first_pixel_].samples_per_replicate;
+    samples_ = job_.unit.replicates * per_replicate_;
     samples_in_block_ = std::min(samples_ - first_sample_, block_capacity);
+    const std::size_t most = std::bit_floor(std::size_t(block_capacity / samples_in_block_));
+    last_pixel_ = first_pixel_ + 1;
+    while (last_pixel_ < pixels_.size() && last_pixel_ - first_pixel_ < most &&
+           pixels_[last_pixel_].samples_per_replicate == per_replicate_ && samples_ <= block_capacity)
+      ++last_pixel_;
+    block.is_one_pixel = last_pixel_ - first_pixel_ == 1;
     block.count = 0;
-    for (const Pixel& pixel : pixels_) fill_pixel(block, pixel);
+    for (const PixelToRender& pixel : pixels_of_block()) fill_pixel(block, pixel);
     block.padded_count = (block.count + widest_lanes - 1) / widest_lanes * widest_lanes;
     for (int i = block.count; i < block.padded_count; ++i) {
       const int last = block.count - 1;
@@ -63,30 +61,20 @@ class PixelBlocks {
     first_sample_ += samples_in_block_;
     if (first_sample_ < samples_) return;
     first_sample_ = 0;
-    x_ += width_;
-    if (x_ >= area_.x_end) {
-      x_ = area_.x_begin;
-      y_ += height_;
-    }
+    first_pixel_ = last_pixel_;
   }
 
  private:
-  struct Pixel {
-    int x, y;
-  };
+  static_assert(block_capacity % widest_lanes == 0);
 
-  static_assert(block_capacity <= 1 << 10 && block_capacity % widest_lanes == 0);
-  /// Bits 0, 2, 4 ... of a Morton number below 2^10.
-  static int even_bits(int morton) {
-    int result = 0;
-    for (int bit = 0; bit < 5; ++bit) result |= (morton >> (2 * bit) & 1) << bit;
-    return result;
+  std::span<const PixelToRender> pixels_of_block() const {
+    return std::span(pixels_).subspan(first_pixel_, last_pixel_ - first_pixel_);
   }
 
   void take_means(const ColorColumn& radiance, std::size_t image) {
     ReplicateColorSum& sum = sums_[image];
     int i = 0;
-    for (const Pixel& pixel : pixels_)
+    for (const PixelToRender& pixel : pixels_of_block())
       for_each_run([&](int replicate, int index, int count) {
         sum.r.add(&radiance.r[i], count, index);
         sum.g.add(&radiance.g[i], count, index);
@@ -98,11 +86,10 @@ class PixelBlocks {
       });
   }
 
-  std::size_t image_size() const {
-    return std::size_t(area_.width()) * std::size_t(area_.height()) * std::size_t(job_.unit.replicates);
-  }
-  Color<double>& mean_at(std::size_t image, const Pixel& pixel, int replicate) {
-    const int number = (pixel.y - area_.y_begin) * area_.width() + pixel.x - area_.x_begin;
+  std::size_t image_size() const { return pixels_.size() * std::size_t(job_.unit.replicates); }
+  Color<double>& mean_at(std::size_t image, const PixelToRender& pixel, int replicate) {
+    const PixelRectangle& area = job_.unit.pixels;
+    const int number = (pixel.y - area.y_begin) * area.width() + pixel.x - area.x_begin;
     return (*job_.means)[image * image_size() + std::size_t(number) * std::size_t(job_.unit.replicates) +
                          std::size_t(replicate)];
   }
@@ -120,7 +107,7 @@ class PixelBlocks {
     }
   }
 
-  void fill_pixel(SampleBlock& block, const Pixel& pixel) {
+  void fill_pixel(SampleBlock& block, const PixelToRender& pixel) {
     for_each_run([&](int replicate, int index, int count) {
       const ReplicatePlace place =
           replicate_place(job_.settings->replicates_by, job_.settings->seed, pixel.x, pixel.y,
@@ -138,12 +125,10 @@ class PixelBlocks {
   }
 
   const TileJob& job_;
-  const PixelRectangle area_;
-  const int samples_, per_replicate_;  ///< Of the unit, a pixel.
-  int width_ = 1, height_ = 1;         ///< Pixels a block.
-  int x_, y_;                          ///< Upper left of the current block.
+  const std::vector<PixelToRender> pixels_;       ///< Of the unit.
+  int samples_ = 0, per_replicate_ = 1;           ///< Of a pixel of the current block, in the unit.
+  std::size_t first_pixel_ = 0, last_pixel_ = 0;  ///< Those of the current block: [first, last).
   int first_sample_ = 0, samples_in_block_ = 0;
-  std::vector<Pixel> pixels_;
   std::vector<ReplicateColorSum> sums_;  ///< Of the image and of each layer.
 };
 

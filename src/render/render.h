@@ -3,6 +3,7 @@
 
 #include "film/film.h"
 #include "film/replicate_luminances.h"
+#include "film/sample_allocation.h"
 #include "integrator/block_counts.h"
 #include "integrator/integrator.h"
 #include "integrator/layer_rule.h"
@@ -24,6 +25,9 @@ struct RenderSettings {
   IntegratorSettings integrator;
   int samples_per_pixel = 16;     ///< In all, over all replicates.
   std::optional<int> replicates;  ///< Must divide samples_per_pixel; default_replicates unless given.
+  /// Of the image's size, where pixels take different numbers of samples: samples_per_pixel is then theirs on
+  /// average, or about.
+  std::optional<SampleAllocation> allocation{};
   ReplicatesBy replicates_by = ReplicatesBy::block;
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all that the process may use.
@@ -33,6 +37,10 @@ struct RenderSettings {
 
   int replicate_count() const { return replicates.value_or(default_replicates(samples_per_pixel)); }
   int samples_per_replicate() const { return samples_per_pixel / replicate_count(); }
+  const SampleAllocation* allocation_or_null() const { return allocation ? &*allocation : nullptr; }
+  int samples_per_replicate_of(int x, int y) const {
+    return allocation ? allocation->at(x, y) : samples_per_replicate();
+  }
 };
 
 struct RenderCounts : BlockCounts {

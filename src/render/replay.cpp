@@ -21,14 +21,15 @@ void check(const Scene& scene, const RenderSettings& settings, const SampleId& s
   in_range("pixel column", sample.x, scene.camera.width_px);
   in_range("pixel row", sample.y, scene.camera.height_px);
   in_range("replicate", sample.replicate, settings.replicate_count());
-  in_range("sample", sample.index, settings.samples_per_pixel / settings.replicate_count());
+  in_range("sample", sample.index, settings.samples_per_replicate_of(sample.x, sample.y));
 }
 
 /// A block of this one sample.
 std::unique_ptr<SampleBlock> block_of(const RenderSettings& settings, const SampleId& sample) {
   auto block = std::make_unique<SampleBlock>();
-  const ReplicatePlace place = replicate_place(settings.replicates_by, settings.seed, sample.x, sample.y,
-                                               sample.replicate, settings.samples_per_replicate());
+  const ReplicatePlace place =
+      replicate_place(settings.replicates_by, settings.seed, sample.x, sample.y, sample.replicate,
+                      settings.samples_per_replicate_of(sample.x, sample.y));
   block->count = block->padded_count = 1;
   block->pixel_x[0] = sample.x;
   block->pixel_y[0] = sample.y;

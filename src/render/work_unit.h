@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/pixel_rectangle.h"
+#include "film/sample_allocation.h"
 
 #include <cstdint>
 #include <vector>
@@ -13,9 +14,14 @@ namespace etendue {
 struct WorkUnit {
   PixelRectangle pixels;
   std::int64_t first_replicate = 0;
-  int replicates = 1, samples_per_replicate = 1;
+  int replicates = 1;
+  int samples_per_replicate = 1;  ///< Of each pixel, where there is no allocation.
+  const SampleAllocation* allocation = nullptr;
 
-  std::int64_t samples_per_pixel() const { return std::int64_t(replicates) * samples_per_replicate; }
+  int samples_per_replicate_of(int x, int y) const {
+    return allocation ? allocation->at(x, y) : samples_per_replicate;
+  }
+  std::int64_t samples() const;  ///< Of all its pixels.
 };
 
 /// `whole` cut into tiles: small enough for every thread to have several, and for a stop to be obeyed soon.

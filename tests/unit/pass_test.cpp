@@ -76,6 +76,33 @@ TEST(Passes, NoBitDependsOnHowTheyAreCut) {
   }
 }
 
+TEST(Passes, PixelsOfAnAllocationAreThoseOfARenderOfThatManySamples) {
+  const LoadedScene loaded = scene_with_invalid_samples("sobol");
+  constexpr int most = 512, replicates = 4;
+  std::mt19937_64 engine(11);
+  RenderSettings settings = settings_of(16, replicates, ReplicatesBy::block);
+  settings.allocation.emplace(37, 37, 1);
+  std::int64_t samples = 0;
+  for (int y = 0; y < 37; ++y)
+    for (int x = 0; x < 37; ++x) {
+      int& count = settings.allocation->at(x, y);
+      count = engine() % 50 == 0 ? most : 1 << engine() % 5;
+      samples += replicates * count;
+    }
+  const RenderResult mixed = render(loaded.scene, settings);
+  EXPECT_EQ(mixed.counts.samples, samples);
+  EXPECT_EQ(mixed.counts.camera_rays, samples);
+  for (int count = 1; count <= most; count *= 2) {
+    const Film uniform =
+        render(loaded.scene, settings_of(replicates * count, replicates, ReplicatesBy::block)).film;
+    for (int y = 0; y < 37; ++y)
+      for (int x = 0; x < 37; ++x)
+        if (settings.allocation->at(x, y) == count) {
+          ASSERT_EQ(mixed.film.at(x, y), uniform.at(x, y)) << x << ' ' << y << ' ' << count;
+        }
+  }
+}
+
 TEST(Passes, FewerReplicatesAreARenderOfThatMany) {
   const LoadedScene loaded = scene_with_invalid_samples("sobol");
   for (const ReplicatesBy by : {ReplicatesBy::block, ReplicatesBy::scrambling}) {

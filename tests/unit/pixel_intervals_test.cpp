@@ -3,6 +3,8 @@
 // 9). Seen to fail when: nothing is pooled; all pixels count as alike; the bound of black pixels is 0.
 #include "film/pixel_intervals.h"
 
+#include "stats/quantile.h"
+
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -173,6 +175,31 @@ TEST(ReplicateLuminances, StayWhereRoomIsMade) {
     for (int replicate = 0; replicate < 9; ++replicate)
       EXPECT_NEAR(luminances.at(pixel % 2, pixel / 2, 9)[std::size_t(replicate)], 10 * pixel + replicate,
                   1e-4);
+}
+
+/// A pixel of many samples beside those of few: their errors tell less about its own.
+TEST(PixelIntervals, ScaleTheErrorsOfNeighboursToThePixelsNumberOfSamples) {
+  constexpr int side = 3;
+  Film film(side, side);
+  SampleAllocation allocation(side, side, 4);
+  allocation.at(1, 1) = 256;
+  ReplicateLuminances none;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const double error_sq = 64.0 / allocation.at(x, y);  // Of the mean of 4 replicates.
+      film.at(x, y) = {4, {5, 5, 5}, Color<double>{1, 1, 1} * (error_sq * 4 * 3), {0, 0, 0}};
+    }
+  const std::vector<PixelInterval> alike = pixel_intervals(film, none, 0.95),
+                                   scaled = pixel_intervals(film, none, 0.95, &allocation);
+  EXPECT_EQ(alike[4].rule, IntervalRule::neighbours);
+  EXPECT_EQ(scaled[4].rule, IntervalRule::student_t);
+  EXPECT_NEAR(scaled[4].luminance_half_width, 0.5 * student_t_quantile(0.975, 3), 1e-4);
+  EXPECT_GT(alike[4].luminance_half_width, 4 * scaled[4].luminance_half_width);
+  // One that has missed what its neighbours met takes theirs, as it would be with its samples.
+  film.at(1, 1).m2 = {0, 0, 0};
+  const PixelInterval missed = pixel_intervals(film, none, 0.95, &allocation)[4];
+  EXPECT_EQ(missed.rule, IntervalRule::neighbours);
+  EXPECT_NEAR(missed.luminance_half_width, 0.5 * std::sqrt(8.0 / 9) * student_t_quantile(0.975, 9 * 3), 1e-4);
 }
 
 }  // namespace

@@ -1,0 +1,95 @@
+#include "pilots.h"
+
+#include "interrupt.h"
+#include "messages.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace etendue::app {
+
+std::optional<ErrorGoal> error_goal(const RenderOptions& options) {
+  if (!options.relative_error) return std::nullopt;
+  return ErrorGoal{*options.relative_error, options.share_within, options.confidence};
+}
+
+namespace {
+
+std::string budget_text(const LightBudget& budget) {
+  return fmt::format("{} light sample{} of {} candidate{}", budget.light_samples,
+                     budget.light_samples == 1 ? "" : "s", budget.candidates,
+                     budget.candidates == 1 ? "" : "s");
+}
+
+/// Nothing where light samples or candidates were asked for, or there is no choice.
+std::optional<BudgetPilot> settle_budget(const RenderOptions& options, const Scene& scene,
+                                         RenderSettings& settings) {
+  const IntegratorSettings usual = settled(settings.integrator, scene.lights);
+  std::optional<BudgetPilot> pilot;
+  if (!options.integrator.shadow_rays) pilot = light_budget_for(scene, settings, &stop_request);
+  settings.integrator = pilot ? with_light_budget(settings.integrator, pilot->chosen) : usual;
+  if (!pilot || options.is_quiet || pilot->chosen == pilot->tried.front().budget) return pilot;
+  const auto chosen = std::ranges::find(pilot->tried, pilot->chosen, &TriedBudget::budget);
+  say("a pilot of {:.1f} s takes {} a camera ray, not {}: about {:.1f} times as efficient here\n",
+      pilot->seconds, budget_text(pilot->chosen), budget_text(pilot->tried.front().budget),
+      chosen->efficiency() / pilot->tried.front().efficiency());
+  return pilot;
+}
+
+/// Nothing where a number of samples was asked for.
+std::optional<Pilot> settle_samples(const RenderOptions& options, const Scene& scene,
+                                    RenderSettings& settings) {
+  const std::optional<ErrorGoal> goal = error_goal(options);
+  if (!goal && !options.seconds) return std::nullopt;
+  if (options.samples_per_pixel && *options.samples_per_pixel < least_pilot_samples)
+    throw InputError(
+        fmt::format("--spp {} with --error: it is the most there may be, and pilots alone take {}",
+                    *options.samples_per_pixel, least_pilot_samples));
+  // Samples of a pixel, and those of one vertex of each, are numbered by 32 bits.
+  const PathRules* rules = settings.integrator.path_rules();
+  const std::int64_t numbers = (std::int64_t(1) << 30) / (rules ? rules->most_samples() : 1);
+  const int most = int(std::min<std::int64_t>(numbers, options.samples_per_pixel.value_or(1 << 16)));
+  if (!options.is_quiet) say("pilots find out how many samples a pixel that takes ...\n");
+  const Pilot pilot = goal ? samples_for_error(scene, settings, *goal, most, &stop_request)
+                           : samples_for_time(scene, settings, *options.seconds, most, &stop_request);
+  if (pilot.is_interrupted) return pilot;
+  settings.samples_per_pixel = pilot.samples_per_pixel;
+  if (options.is_quiet) return pilot;
+  say("pilots of {:.1f} s ask for {} samples a pixel{}\n", pilot.seconds, settings.samples_per_pixel,
+      pilot.is_dark    ? ": they have met no light"
+      : !pilot.is_most ? ""
+      : goal           ? ", the most there may be: what was asked for is not reached"
+                       : ", the most there may be: the time is not used up");
+  return pilot;
+}
+
+/// Nothing without --adaptive.
+std::optional<AllocationPilot> settle_allocation(const RenderOptions& options, const Scene& scene,
+                                                 RenderSettings& settings) {
+  if (!options.is_adaptive) return std::nullopt;
+  AllocationPilot pilot = allocation_for(scene, settings, &stop_request);
+  if (!pilot.allocation) return pilot;
+  settings.replicates = pilot.replicates;
+  settings.allocation = pilot.allocation;
+  if (!options.is_quiet)
+    say("a pilot of {} samples a pixel, of {:.1f} s, shares out {} to {} samples a pixel, {:.1f} on "
+        "average\n",
+        pilot.samples_per_pixel, pilot.seconds, pilot.replicates * pilot.allocation->least(),
+        std::int64_t(pilot.replicates) * pilot.allocation->most(),
+        pilot.replicates * pilot.allocation->mean());
+  return pilot;
+}
+
+}  // namespace
+
+Pilots settle_by_pilots(const RenderOptions& options, const Scene& scene, RenderSettings& settings) {
+  Pilots pilots;
+  pilots.budget = settle_budget(options, scene, settings);
+  if (options.replay.empty()) pilots.samples = settle_samples(options, scene, settings);
+  if (pilots.samples) pilots.is_interrupted = pilots.samples->is_interrupted;
+  if (!pilots.is_interrupted) pilots.allocation = settle_allocation(options, scene, settings);
+  if (pilots.allocation) pilots.is_interrupted = !pilots.allocation->allocation;
+  return pilots;
+}
+
+}  // namespace etendue::app
