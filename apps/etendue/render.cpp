@@ -5,6 +5,7 @@
 #include "interrupt.h"
 #include "messages.h"
 #include "output_files.h"
+#include "plugin.h"
 #include "progress.h"
 #include "render/check_settings.h"
 #include "render/thread_limit.h"
@@ -66,8 +67,12 @@ int run(const RenderOptions& options) {
   LoadedScene loaded = load_scene(description, loading);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
-  settings.integrator = settled(
-      integrator_for(options.integrator, loaded, description.dialect, loaded.warnings), loaded.scene.lights);
+  const auto chosen_integrator = [&] {
+    if (!options.plugin.empty()) return integrator_of_plugin(options, loaded);
+    return settled(integrator_for(options.integrator, loaded, description.dialect, loaded.warnings),
+                   loaded.scene.lights);
+  };
+  settings.integrator = chosen_integrator();
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   const std::vector<Region> regions =
       regions_of(options.regions, loaded.scene.camera.width_px, loaded.scene.camera.height_px);
@@ -84,6 +89,7 @@ int run(const RenderOptions& options) {
     const SamplerKind sampler = loaded.scene.sampler;
     loaded = load_scene(description, loading);
     loaded.scene.sampler = sampler;
+    if (!options.plugin.empty()) settings.integrator = chosen_integrator();  // it knows the scene's tables
   }
   if (!options.replay.empty()) {
     const SampleId sample = sample_id_from_text(options.replay);
