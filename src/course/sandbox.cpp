@@ -58,13 +58,17 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Takes in what it prints until it closes its output or its time is up.
-  void listen(SandboxResult& result) {
+  /// Takes in what it prints until it closes its output, its time is up, or it must end.
+  void listen(SandboxResult& result, const std::function<bool()>& must_end) {
     std::array<char, 1 << 16> buffer;
     for (;;) {
       const double left = limits_.seconds - seconds();
       if (left <= 0) {
         result.is_out_of_time = true;
+        return;
+      }
+      if (must_end && must_end()) {
+        result.is_cut_short = true;
         return;
       }
       pollfd ready{output_, POLLIN, 0};
@@ -82,13 +86,13 @@ class Process {
 
   /// Waits for what has closed its output, within the time; then ends it and all that it started.
   void finish(SandboxResult& result) {
-    while (!result.is_out_of_time && !has_ended()) {
+    while (!result.is_out_of_time && !result.is_cut_short && !has_ended()) {
       usleep(1000);
       result.is_out_of_time = seconds() > limits_.seconds;
     }
     end();
     result.seconds = seconds();
-    if (result.is_out_of_time) return;
+    if (result.is_out_of_time || result.is_cut_short) return;
     if (WIFSIGNALED(status_)) result.signal = WTERMSIG(status_);
     if (WIFEXITED(status_)) result.exit_code = WEXITSTATUS(status_);
     result.is_out_of_time = result.signal == SIGXCPU;
@@ -144,16 +148,23 @@ std::string what_signal_means(int signal) {
 
 }  // namespace
 
-SandboxResult run_in_sandbox(const std::vector<std::string>& words, const SandboxLimits& limits) {
+SandboxResult run_in_sandbox(const std::vector<std::string>& words, const SandboxLimits& limits,
+                             const std::function<bool()>& must_end) {
   const SandboxRules rules(limits);
   SandboxResult result;
   result.not_held = rules.not_held();
   Process process(words, limits, rules);
-  process.listen(result);
+  process.listen(result, must_end);
   process.finish(result);
   if (result.exit_code == not_started && result.printed_bytes == 0)
     throw InputError(fmt::format("cannot run {} within limits", words[0]));
   return result;
+}
+
+std::size_t memory_for_rendering() {
+  // Each thread has a stack, and addresses for an arena of its own, few of which are ever used.
+  constexpr std::size_t program = std::size_t{4} << 30, thread = std::size_t{160} << 20;
+  return program + thread * std::size_t(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
 std::string explanation(const SandboxResult& result, const SandboxLimits& limits) {
