@@ -13,10 +13,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-SandboxResult run_tool(const Submission& submission, const std::vector<std::string>& words) {
+/// A program that may write to the folder only.
+SandboxResult run_tool(const Submission& submission, const std::vector<std::string>& program) {
+  std::vector<std::string> words{"/usr/bin/env", "TMPDIR=" + submission.build_folder().string()};
+  words.insert(words.end(), program.begin(), program.end());
   return run_in_sandbox(words, {.seconds = 120,
                                 .output_bytes = std::size_t{16} << 20,
-                                .writable = {submission.folder, fs::temp_directory_path()},
+                                .writable = {submission.folder},
                                 .may_start_programs = true});
 }
 
@@ -39,7 +42,6 @@ std::string page_of(const Submission& submission) {
 
 /// Throws InputError where a tool is missing, or fails.
 fs::path make_pdf(const Submission& submission) {
-  fs::create_directories(submission.build_folder());
   const fs::path page = submission.build_folder() / "readme.html", pdf = submission.folder / "readme.pdf";
   std::ofstream(page) << page_of(submission);
   if (!fs::exists("/usr/bin/weasyprint"))
@@ -66,6 +68,7 @@ std::string text_of(const fs::path& file) {
 HandIn pack(const Submission& submission) {
   if (!fs::exists(submission.text()))
     throw InputError(fmt::format("there is no readme.md in {}", submission.folder.string()));
+  fs::create_directories(submission.build_folder());
   HandIn result;
   const std::optional<int> group = group_number(submission.source());
   if (!group || *group == 0)

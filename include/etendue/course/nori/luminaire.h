@@ -9,6 +9,7 @@ NORI_NAMESPACE_BEGIN
 
 class Luminaire;
 class Mesh;
+using Emitter = Luminaire;  ///< As later frameworks call it.
 
 /// A place that is lit, a point on a light, and what lies between the two. All in the world.
 struct LuminaireQueryRecord {

@@ -20,6 +20,8 @@ class NORI_SHARED Mesh : public NoriObject {
   bool isLuminaire() const { return getLuminaire() != nullptr; }
   /// Null where it is none.
   virtual const Luminaire* getLuminaire() const = 0;
+  bool isEmitter() const { return isLuminaire(); }
+  const Emitter* getEmitter() const { return getLuminaire(); }
   virtual const BSDF* getBSDF() const = 0;
   /// As messages about the scene name it.
   virtual const std::string& getName() const = 0;

@@ -7,6 +7,7 @@
 
 NORI_NAMESPACE_BEGIN
 
+/// By itself, none.
 class NORI_SHARED PropertyList {
  public:
   virtual ~PropertyList() = default;
@@ -38,12 +39,12 @@ class NORI_SHARED PropertyList {
   }
 
  protected:
-  virtual std::optional<bool> boolean(const std::string& name) const = 0;
-  virtual std::optional<int> integer(const std::string& name) const = 0;
-  virtual std::optional<float> real(const std::string& name) const = 0;
-  virtual std::optional<std::string> text(const std::string& name) const = 0;
-  virtual std::optional<Color3f> color(const std::string& name) const = 0;
-  virtual std::optional<Vector3f> vector(const std::string& name) const = 0;
+  virtual std::optional<bool> boolean(const std::string& /*name*/) const { return {}; }
+  virtual std::optional<int> integer(const std::string& /*name*/) const { return {}; }
+  virtual std::optional<float> real(const std::string& /*name*/) const { return {}; }
+  virtual std::optional<std::string> text(const std::string& /*name*/) const { return {}; }
+  virtual std::optional<Color3f> color(const std::string& /*name*/) const { return {}; }
+  virtual std::optional<Vector3f> vector(const std::string& /*name*/) const { return {}; }
 
  private:
   template <class T>

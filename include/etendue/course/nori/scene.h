@@ -16,6 +16,7 @@ class NORI_SHARED Scene : public NoriObject {
 
   /// The lights that are surfaces.
   virtual const std::vector<Luminaire*>& getLuminaires() const = 0;
+  const std::vector<Emitter*>& getEmitters() const { return getLuminaires(); }
   virtual const std::vector<Mesh*>& getMeshes() const = 0;
 };
 
