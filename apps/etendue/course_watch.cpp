@@ -21,7 +21,7 @@ namespace {
 struct WatchOptions {
   std::string folder, scene;
   int port = 7080, samples_per_pixel = 64;
-  double seconds = 20;
+  double seconds = 10;
   bool is_sanitized = false;
 };
 
@@ -86,8 +86,8 @@ class Watch {
       if (result.is_cut_short) return;
       if (!result.is_done()) {
         const std::string why = explanation(result, limits);
-        tell(why.empty() ? "your integrator could not be rendered with" : "your integrator: " + why,
-             warnings_ + result.output, true);
+        tell(why.empty() ? "the render has failed" : "your integrator: " + why, warnings_ + result.output,
+             true);
         return;
       }
       std::ifstream file(picture, std::ios::binary);
@@ -128,7 +128,7 @@ void add_course_watch_command(CLI::App& course, int& exit_code) {
       ->check(whole_number(65535));
   command
       ->add_option("--seconds", options->seconds,
-                   "A render of one sample a pixel that takes longer is ended [20]")
+                   "A render of one sample a pixel that takes longer is ended [10]")
       ->check(CLI::PositiveNumber);
   command->add_flag("--sanitize", options->is_sanitized,
                     "Find reads and writes out of bounds: several times slower");

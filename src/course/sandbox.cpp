@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -24,6 +25,7 @@ constexpr int not_started = 126;  ///< Exit code of a process that could not bec
 /// In the new process. Does not come back.
 [[noreturn]] void become(char* const* words, int output, const SandboxRules& rules) {
   setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would end it
   dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
@@ -130,7 +132,9 @@ std::string what_signal_means(int signal) {
     case SIGFPE:
       return "it crashed: a division of whole numbers by zero";
     case SIGABRT:
-      return "it gave up (abort): an assertion does not hold, or memory was used after it was freed";
+      return "it gave up (abort): an assertion does not hold, or its memory is in disorder (written past the "
+             "end of "
+             "an array, freed twice, shared by threads); --sanitize may tell the line";
     case SIGILL:
     case SIGTRAP:
       return "it crashed: it ran into a place that no program should reach, as the end of a function that "

@@ -106,8 +106,7 @@ std::vector<std::string> sanitizer_environment() {
     throw InputError(
         "the compiler has no AddressSanitizer (libasan.so)\n  leave --sanitize out, or take g++");
   // Leaks of the program are not the student's.
-  return {"/usr/bin/env", "LD_PRELOAD=" + library, "ASAN_OPTIONS=detect_leaks=0:color=never",
-          "UBSAN_OPTIONS=print_stacktrace=1"};
+  return {"/usr/bin/env", "LD_PRELOAD=" + library, "ASAN_OPTIONS=detect_leaks=0:color=never"};
 }
 
 }  // namespace etendue

@@ -1,8 +1,8 @@
 // A student's integrator and the program's `light` estimate one image: Welch's t-test, block by block.
 //
 // False-alarm rate: 1e-5 for both scenes together (Sidak over scenes, blocks and channels); fixed seeds.
-// Seen to fail when: the density that Mesh::pdf gives is of a single triangle; points are not uniform over a
-// mesh; the BSDF gets its two directions in the world; lights shine from behind.
+// Seen to fail when: Mesh::pdf is that of a single triangle; triangles of a mesh are chosen alike; the
+// student's code leaves 1/n of n lights out; it asks the BSDF in world directions.
 #include "film_statistics.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"

@@ -61,6 +61,36 @@ TEST(StudentIntegrator, NotesEachCall) {
   EXPECT_NEAR(radiance.r, 3 * inv_pi * cosine * cosine / length_sq(to_light) / 0.5f, 1e-5);
 }
 
+TEST(StudentIntegrator, EachSpellingMeansTheSame) {
+  const LoadedScene loaded = lamp_over_floor();
+  const auto radiance_of = [&](const char* module, const char* name) {
+    const StudentIntegrator integrator(test::course_module(module), name, loaded.scene, loaded.places, {});
+    StreamSampler sampler(SamplerKind::sobol, {1, 2, 3});
+    return integrator.radiance({{0, -1, 1}, {0, 0, -1}}, 0, 10, sampler).r;
+  };
+  const float expected = radiance_of("light_integrator", "light");
+  EXPECT_GT(expected, 0);
+  EXPECT_NEAR(radiance_of("light_2012", "light"), expected, 1e-5f * expected);
+  EXPECT_NEAR(radiance_of("light_2012", "later"), expected, 1e-5f * expected);
+}
+
+/// Numbers that end.
+class GivenNumbers final : public nori::Sampler {
+ public:
+  float next1D() override { throw nori::NoriException("no numbers are left"); }
+  nori::Point2f next2D() override { return {next1D(), 0}; }
+};
+
+TEST(StudentIntegrator, WhatItThrowsIsAnError) {
+  const LoadedScene loaded = lamp_over_floor();
+  const auto integrator = test::student_integrator("light_integrator", loaded);
+  GivenNumbers sampler;
+  EXPECT_THAT(test::error_of([&] {
+                integrator->radiance({{0, -1, 1}, {0, 0, -1}}, 0, 10, sampler);
+              }),
+              HasSubstr("libcourse_light_integrator.so: no numbers are left"));
+}
+
 TEST(StudentScene, LightsAreDarkBehind) {
   const LoadedScene loaded = lamp_over_floor();
   const StudentScene scene(loaded.scene, loaded.places);
