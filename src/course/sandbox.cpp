@@ -166,6 +166,9 @@ SandboxResult run_in_sandbox(const std::vector<std::string>& words, const Sandbo
 }
 
 std::size_t memory_for_rendering() {
+#ifdef __SANITIZE_ADDRESS__  // which takes terabytes of addresses for itself
+  return 0;
+#endif
   // Each thread has a stack, and addresses for an arena of its own, few of which are ever used.
   constexpr std::size_t program = std::size_t{4} << 30, thread = std::size_t{160} << 20;
   return program + thread * std::size_t(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));

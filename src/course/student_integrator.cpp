@@ -67,7 +67,7 @@ class StudentProperties final : public nori::PropertyList {
 
 StudentIntegrator::StudentIntegrator(const StudentModule& module, std::string_view name, const Scene& scene,
                                      const ScenePlaces& places, const Object& description)
-    : file_(module.file()), class_(&module.find(name)), scene_(scene, places) {
+    : file_(module.file()), identity_(module.identity()), class_(&module.find(name)), scene_(scene, places) {
   const Object nothing;
   const StudentProperties properties(description.type == class_->name ? description : nothing);
   told_of_errors(file_, [&] {
@@ -86,8 +86,8 @@ Colorf StudentIntegrator::radiance(const Ray<float>& ray, float t_near, float t_
 
 IntegratorSettings settings_of(std::shared_ptr<const StudentIntegrator> integrator, SamplerKind sampler) {
   const std::string_view name = integrator->name();
-  const std::string file = integrator->file();
-  return {name, SingleRays{file, [integrator = std::move(integrator), sampler](const CameraSample& sample) {
+  const std::string plugin = integrator->module_identity();
+  return {name, SingleRays{plugin, [integrator = std::move(integrator), sampler](const CameraSample& sample) {
                              StreamSampler numbers(sampler, sample.stream);
                              return integrator->radiance(sample.ray, sample.t_near, sample.t_far, numbers);
                            }}};

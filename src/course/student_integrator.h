@@ -20,7 +20,8 @@ class StudentIntegrator {
 
   /// Of the plugin's own text, which lives as long as the program.
   std::string_view name() const { return class_->name; }
-  const std::string& file() const { return file_; }
+  /// As of its module.
+  const std::string& module_identity() const { return identity_; }
   const StudentScene& scene() const { return scene_; }
 
   /// One sample of the radiance (W/(m^2 sr)) along a ray, as the student's Li gives it. May be called from
@@ -28,7 +29,7 @@ class StudentIntegrator {
   Colorf radiance(const Ray<float>& ray, float t_near, float t_far, nori::Sampler& sampler) const;
 
  private:
-  std::string file_;
+  std::string file_, identity_;
   const nori::ClassOfModule* class_;
   StudentScene scene_;
   std::unique_ptr<nori::Integrator> integrator_;

@@ -1,11 +1,24 @@
 #include "course/student_module.h"
 
+#include "base/content_hash.h"
 #include "base/error.h"
+#include "scenefile/whole_file.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 namespace etendue {
+
+namespace {
+
+std::string identity_of(const std::filesystem::path& file) {
+  const std::shared_ptr<const SourceFile> source = read_whole_file(file, "a plugin");
+  ContentHash hash;
+  hash.add(source->text.data(), source->text.size());
+  return fmt::format("{} {:016x}", file.filename().string(), hash.digest());
+}
+
+}  // namespace
 
 StudentModule::StudentModule(const std::filesystem::path& file) : file_(file.string()) {
   // With a folder in its name, or it would be looked for where the system's libraries are.
@@ -28,6 +41,7 @@ StudentModule::StudentModule(const std::filesystem::path& file) : file_(file.str
         fmt::format("{} registers no integrator\n"
                     "  write NORI_REGISTER_CLASS(ClassName, \"name\"); below the class",
                     file_));
+  identity_ = identity_of(file);
   classes_ = {module.classes, std::size_t(module.count)};
 }
 

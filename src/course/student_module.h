@@ -19,9 +19,11 @@ class StudentModule {
   /// The class of this name; of an empty name the only one. Throws InputError with the names that there are.
   const nori::ClassOfModule& find(std::string_view name) const;
   const std::string& file() const { return file_; }
+  /// Its name and a hash of its content: for what is said of an image.
+  const std::string& identity() const { return identity_; }
 
  private:
-  std::string file_;
+  std::string file_, identity_;
   std::span<const nori::ClassOfModule> classes_;
 };
 

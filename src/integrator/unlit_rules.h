@@ -39,7 +39,7 @@ struct CameraSample {
 
 /// A function of one camera ray at a time, that knows the scene by itself. Called from many threads.
 struct SingleRays {
-  std::string plugin;                                   ///< The file that it comes from.
+  std::string plugin;                                   ///< Where it comes from: a file and a hash.
   std::function<Colorf(const CameraSample&)> radiance;  ///< One sample of it, W/(m^2 sr).
 };
 

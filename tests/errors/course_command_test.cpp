@@ -25,6 +25,8 @@ class CourseCommand : public ::testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
+  const std::filesystem::path& folder() const { return folder_.path(); }
+
  private:
   test::TemporaryFolder folder_;
 };
@@ -54,6 +56,27 @@ TEST_F(CourseCommand, BuildSaysWhatTheCompilerSays) {
   EXPECT_EQ(built.exit_code, 1);
   EXPECT_THAT(built.err, HasSubstr("light_integrator.cpp:1:21: error:"));
   EXPECT_THAT(run({"course", "build", "."}).err, HasSubstr("there is no light_integrator.cpp in ."));
+}
+
+TEST_F(CourseCommand, WatchRendersWhatIsSaved) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the search for leaks needs what a sandbox does not give";
+#endif
+  run({"course", "new", "ex3", "mine"});
+  write("scene.xml",
+        "<scene><camera type=\"perspective\"><integer name=\"width\" value=\"8\"/><integer name=\"height\" "
+        "value=\"8\"/></camera><shape type=\"sphere\"/></scene>");
+  const Program watch({"course", "watch", "mine", "--port", "0", "--scene", "scene.xml", "--spp", "1"},
+                      folder());
+  const auto says = [&](const char* text) {
+    return [&watch, text] { return watch.err_so_far().find(text) != std::string::npos; };
+  };
+  watch.wait_until(says("1 sample a pixel"));
+  EXPECT_TRUE(says("1 sample a pixel")()) << watch.err_so_far();
+  write("mine/light_integrator.cpp", text_of("mine/light_integrator.cpp") + "x\n");
+  watch.wait_until(says("does not compile"));
+  EXPECT_TRUE(says("does not compile")()) << watch.err_so_far();
+  watch.send(SIGTERM);
 }
 
 TEST_F(CourseCommand, PluginsAreToldFromOtherFiles) {
