@@ -12,6 +12,7 @@ enum ExitCode { done = 0, check_failed = 1, bad_input = 2, interrupted = 3 };
 void add_render_command(CLI::App& app, int& exit_code);
 void add_lint_command(CLI::App& app, int& exit_code);
 void add_test_command(CLI::App& app, int& exit_code);
+void add_course_command(CLI::App& app, int& exit_code);
 void add_info_command(CLI::App& app, int& exit_code);
 
 }  // namespace etendue::app

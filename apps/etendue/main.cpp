@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   app::add_render_command(app, exit_code);
   app::add_lint_command(app, exit_code);
   app::add_test_command(app, exit_code);
+  app::add_course_command(app, exit_code);
   app::add_info_command(app, exit_code);
   try {
     check_command(app, argc, argv);

@@ -6,6 +6,7 @@
 #include "messages.h"
 #include "output_files.h"
 #include "pilots.h"
+#include "plugin.h"
 #include "progress.h"
 #include "render/check_settings.h"
 #include "render/thread_limit.h"
@@ -66,8 +67,12 @@ int run(const RenderOptions& options) {
   LoadedScene loaded = load_scene(description, loading);
   if (!options.sampler.empty()) loaded.scene.sampler = sampler_from_name(options.sampler);
   RenderSettings settings = settings_for(options, loaded);
-  const IntegratorSettings asked_for =
-      integrator_for(options.integrator, loaded, description.dialect, loaded.warnings);
+  const auto integrator_asked_for = [&] {
+    return options.plugin.empty()
+               ? integrator_for(options.integrator, loaded, description.dialect, loaded.warnings)
+               : integrator_of_plugin(options, loaded);
+  };
+  IntegratorSettings asked_for = integrator_asked_for();
   settings.integrator = settled(asked_for, loaded.scene.lights);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   const std::vector<Region> regions =
@@ -85,6 +90,7 @@ int run(const RenderOptions& options) {
     const SamplerKind sampler = loaded.scene.sampler;
     loaded = load_scene(description, loading);
     loaded.scene.sampler = sampler;
+    if (!options.plugin.empty()) asked_for = integrator_asked_for();  // it knows the scene's tables
   }
   settings.integrator = asked_for;
   catch_signals(LaterSignals::hurry);

@@ -113,6 +113,10 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->allow_extra_args(false);
   command.add_option("--sampler", options.sampler, "Instead of the file's: independent or sobol");
   add_integrator_options(command, options.integrator);
+  command.add_option(
+      "--plugin", options.plugin,
+      "Shared library with integrators of your own (docs/course.md), of which --integrator names "
+      "one; where it has only one, that");
   command.add_option("--spp", options.samples_per_pixel, "Samples a pixel in all, instead of the file's")
       ->check(whole_number(std::numeric_limits<int>::max()));
   command
@@ -210,6 +214,7 @@ std::string replay_command(const RenderOptions& options, const InvalidSample& sa
     command += fmt::format(" {} {}", option, value);
   };
   const IntegratorOptions& integrator = options.integrator;
+  if (!options.plugin.empty()) add("--plugin", shell_quoted(options.plugin));
   if (!integrator.name.empty()) add("--integrator", integrator.name);
   if (!options.sampler.empty()) add("--sampler", options.sampler);
   if (!integrator.light_sampler.empty()) add("--light-sampler", integrator.light_sampler);

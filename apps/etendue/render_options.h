@@ -21,7 +21,7 @@ struct IntegratorOptions {
 struct RenderOptions {
   std::string scene_file;
   std::vector<std::string> outputs;
-  std::string sampler, replicates_by, stats_file, replay;
+  std::string sampler, replicates_by, stats_file, replay, plugin;
   std::vector<std::string> regions;  ///< As they were given.
   std::optional<int> samples_per_pixel, replicates;
   double confidence = 0.95;

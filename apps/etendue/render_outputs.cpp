@@ -60,6 +60,8 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendering& rende
       {"dialect", std::string(dialect_name(rendering.description.dialect))},
       {"sampler", std::string(sampler_name(rendering.loaded.scene.sampler))},
       {"software", "Etendue " ETENDUE_VERSION}};
+  if (const auto* rules = std::get_if<SingleRays>(&settings.integrator.rules))
+    fields.emplace_back("plugin", rules->plugin);
   if (rendering.result.is_fragment)
     fields.emplace_back("pixelsNotRendered",
                         std::to_string(rendering.pixels() - rendering.pixels_rendered()));

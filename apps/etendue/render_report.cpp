@@ -130,6 +130,8 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   json["dialect"] = dialect_name(rendering.description.dialect);
   json["dialect_reason"] = rendering.description.dialect_reason;
   json["integrator"] = settings.integrator.name;
+  if (const auto* single = std::get_if<SingleRays>(&settings.integrator.rules))
+    json["plugin"] = single->plugin;
   if (const std::string_view heuristic = heuristic_name(settings.integrator); !heuristic.empty())
     json["heuristic"] = heuristic;
   json["light_sampler"] = settings.integrator.light_sampler();

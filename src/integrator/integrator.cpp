@@ -190,6 +190,7 @@ std::string text_of(const SimpleLight& light) {
   return fmt::format(" position={},{},{} energy={},{},{}", light.position.x, light.position.y,
                      light.position.z, light.energy.r, light.energy.g, light.energy.b);
 }
+std::string text_of(const SingleRays& rules) { return " plugin=" + rules.plugin; }
 
 IntegratorSettings make_sampling_direct(const Object& description, std::vector<UnreadKey>& unread) {
   const Parameters parameters(description, sampling_direct_plugin, unread);

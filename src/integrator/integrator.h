@@ -18,7 +18,7 @@
 
 namespace etendue {
 
-using IntegratorRules = std::variant<PathRules, ShowNormals, VisibilityRules, ShowMaterial, SimpleLight>;
+using IntegratorRules = std::variant<PathRules, ShowNormals, VisibilityRules, ShowMaterial, SimpleLight, SingleRays>;
 
 struct IntegratorSettings {
   std::string_view name = "light";  ///< Of those that integrator_from_name knows.

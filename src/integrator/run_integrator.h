@@ -6,6 +6,7 @@
 #include "integrator/normals.h"
 #include "integrator/path.h"
 #include "integrator/simple.h"
+#include "integrator/single_rays.h"
 #include "integrator/visibility.h"
 
 namespace etendue {
@@ -24,6 +25,7 @@ struct RunIntegrator {
   void operator()(const ShowMaterial&) const { material<F>(scene, block); }
   void operator()(const VisibilityRules& rules) const { visibility<F>(scene, block, rules); }
   void operator()(const SimpleLight& light) const { simple<F>(scene, block, light); }
+  void operator()(const SingleRays& rules) const { single_rays<F>(scene, block, rules); }
 };
 
 /// \param light_sampler over the scene's lights

@@ -19,8 +19,8 @@ import tempfile
 
 # scenefile comes early because the plugins of every family state their parameters through it.
 FOLDERS = ["base", "stats", "scenefile", "sampler", "image", "film", "geometry", "texture", "bsdf", "medium", "light",
-           "lightsampler", "scene", "integrator", "lint", "render", "noritest"]
-TOPS = ["src", "apps", "tests", "bench"]
+           "lightsampler", "scene", "integrator", "lint", "render", "noritest", "course"]
+TOPS = ["src", "apps", "tests", "bench", "include"]
 MAX_HEADER_LINES = 150
 XSIMD_HOME = "src/base/simd.h"
 EMBREE_HOME = "src/geometry/raycast_embree.cpp"
