@@ -1,6 +1,6 @@
 # The kernels: one source, one module for each instruction set. Everything in a module but its entry is hidden,
 # so that no inline function compiled for AVX-512 can be picked by the linker for the rest of the program.
-# etendue_add_modules(NAME SOURCE): NAME_scalar, NAME_v2 ... as lib/libetendue_NAME_LEVEL.so, and target NAME.
+# etendue_add_modules(NAME SOURCE): for each of ETENDUE_ISAS NAME_scalar, NAME_v2 ... as lib/libetendue_NAME_LEVEL.so, and target NAME.
 function(etendue_add_modules name source)
   set(flags_scalar -DETENDUE_SCALAR_LANES)
   set(flags_v2 -march=x86-64-v2)
@@ -8,7 +8,7 @@ function(etendue_add_modules name source)
   set(flags_v3 -march=x86-64-v3 $<$<CXX_COMPILER_ID:GNU>:-mmove-max=256;-mstore-max=256>)
   set(flags_v4 -march=x86-64-v4 $<$<CXX_COMPILER_ID:GNU>:-mmove-max=512;-mstore-max=512>)
   add_custom_target(etendue_${name})
-  foreach(level scalar v2 v3 v4)
+  foreach(level IN LISTS ETENDUE_ISAS)
     set(target etendue_${name}_${level})
     add_library(${target} MODULE ${source})
     target_compile_options(${target} PRIVATE ${flags_${level}} -fno-math-errno -fno-trapping-math)
@@ -29,7 +29,7 @@ function(etendue_inline_stages name)
   if(CMAKE_BUILD_TYPE STREQUAL "Debug" OR ETENDUE_SANITIZE)
     return()
   endif()
-  foreach(level scalar v2 v3 v4)
+  foreach(level IN LISTS ETENDUE_ISAS)
     target_compile_options(etendue_${name}_${level} PRIVATE -O3
       $<$<CXX_COMPILER_ID:GNU>:-finline-limit=100000;--param=inline-unit-growth=2000;--param=large-function-growth=10000;--param=max-inline-insns-auto=1000;--param=large-function-insns=100000;--param=large-stack-frame-growth=10000;--param=early-inlining-insns=1000;--param=max-inline-insns-single=2000>)
   endforeach()

@@ -16,6 +16,9 @@ namespace {
 constexpr std::array all_isas{Isa::scalar, Isa::v2, Isa::v3, Isa::v4};
 constexpr std::array<std::string_view, 4> names{"scalar", "v2", "v3", "v4"};
 
+/// Whether kernels were built for it.
+bool is_built(Isa isa) { return std::string_view(ETENDUE_ISAS).find(isa_name(isa)) != std::string_view::npos; }
+
 bool has_isa(Isa isa) {
   __builtin_cpu_init();
 #ifdef __clang__
@@ -55,13 +58,15 @@ std::string_view isa_name(Isa isa) { return names[std::size_t(isa)]; }
 std::vector<Isa> available_isas() {
   std::vector<Isa> available;
   for (const Isa isa : all_isas)
-    if (has_isa(isa)) available.push_back(isa);
+    if (is_built(isa) && has_isa(isa)) available.push_back(isa);
   return available;
 }
 
 Isa isa_from_name(std::string_view name) {
   for (const Isa isa : all_isas) {
     if (isa_name(isa) != name) continue;
+    if (!is_built(isa))
+      throw InputError(fmt::format("this program was built without '{}' kernels; see etendue info", name));
     if (!has_isa(isa))
       throw InputError(fmt::format("this machine has no '{}' instructions; see etendue info", name));
     return isa;
