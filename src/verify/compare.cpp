@@ -8,7 +8,8 @@
 namespace etendue {
 namespace {
 
-/// Of each block with those around it; where no sample there has found anything, of the whole image.
+/// Of each block with those around it, and at least that of the whole image: where a highlight has been
+/// missed, what else the blocks have found has small steps.
 std::vector<double> steps_around(const ComparedImage& image) {
   const int columns = blocks_along(image.image.width), rows = blocks_along(image.image.height);
   std::vector<double> steps;
@@ -18,8 +19,7 @@ std::vector<double> steps_around(const ComparedImage& image) {
       for (int y = std::max(0, row - 1); y <= std::min(rows - 1, row + 1); ++y)
         for (int x = std::max(0, column - 1); x <= std::min(columns - 1, column + 1); ++x)
           around += image.blocks[std::size_t(y * columns + x)];
-      const double step = around.variance > 0 ? around.step() : image.whole.step();
-      steps.push_back(std::max(step, image.unseen_step));
+      steps.push_back(std::max({around.step(), image.whole.step(), image.unseen_step}));
     }
   return steps;
 }

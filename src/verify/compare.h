@@ -18,7 +18,7 @@ struct ComparedImage {
   MeanMoments whole{};                   ///< Sum over all pixels.
   std::vector<MeanMoments> materials{};  ///< Sums over the pixels that show each.
   std::vector<MeanMoments> blocks{};
-  std::vector<double> block_steps{};  ///< Of each block and those around it (MeanMoments::step).
+  std::vector<double> block_steps{};  ///< Of each block: MeanMoments::step of it, those around, and all.
 };
 
 /// \param material_of_pixel that is seen through its middle, -1 where none is \param materials how many
