@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", ETENDUE_VERSION);
   int exit_code = app::done;
   app::add_render_command(app, exit_code);
+  app::add_verify_command(app, exit_code);
   app::add_lint_command(app, exit_code);
   app::add_test_command(app, exit_code);
   app::add_course_command(app, exit_code);

@@ -3,6 +3,7 @@
 #include "error_report.h"
 #include "image/image_file.h"
 #include "interrupt.h"
+#include "lifted_lights.h"
 #include "messages.h"
 #include "output_files.h"
 #include "pilots.h"
@@ -81,17 +82,9 @@ int run(const RenderOptions& options) {
   LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};
   const std::vector<Finding> findings = lint(subject, brief);
   warn(options, loaded.warnings, options.replay.empty() ? findings : std::vector<Finding>{});
-  for (const Finding& finding : findings)
-    loading.lifted.insert(loading.lifted.end(), finding.to_lift.begin(), finding.to_lift.end());
-  if (!loading.lifted.empty()) {
-    loading.lift = lift_of_lights(loaded.scene);
-    if (!options.is_quiet)
-      say("lights in one plane with another surface are taken to lie {:.2g} m before it\n", loading.lift);
-    const SamplerKind sampler = loaded.scene.sampler;
-    loaded = load_scene(description, loading);
-    loaded.scene.sampler = sampler;
-    if (!options.plugin.empty()) asked_for = integrator_asked_for();  // it knows the scene's tables
-  }
+  lift_lights(description, findings, options.is_quiet, loading, loaded);
+  if (!options.plugin.empty())
+    asked_for = integrator_asked_for();  // it knows the tables of the scene as it is now
   settings.integrator = asked_for;
   catch_signals(LaterSignals::hurry);
   const Pilots pilots = settle_by_pilots(options, loaded.scene, settings);

@@ -68,15 +68,6 @@ std::function<std::string(const std::string&)> share(Ends upper) {
   };
 }
 
-std::function<std::string(const std::string&)> positive() {
-  return [](const std::string& text) {
-    double number = 0;
-    const bool is_positive =
-        CLI::detail::lexical_cast(text, number) && number > 0 && number <= std::numeric_limits<double>::max();
-    return is_positive ? std::string() : fmt::format("'{}' is not a number above 0", text);
-  };
-}
-
 }  // namespace
 
 void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
@@ -141,7 +132,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
               "--error", options.relative_error,
               "As many samples as it takes for intervals to reach no farther than this share of a pixel "
               "(or of 1 % of the image's mean, where that is more): 0.01. Pilots tell; --spp is the most")
-          ->check(positive())
+          ->check(positive_number())
           ->excludes(replicates);
   command
       .add_option("--of", options.share_within, "In what share of the pixels --error is to be kept [0.99]")
@@ -151,7 +142,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       .add_option(
           "--time", options.seconds,
           "As many samples as can be rendered in so many seconds, pilots counted, reading the scene not")
-      ->check(positive())
+      ->check(positive_number())
       ->excludes(replicates)
       ->excludes(spp)
       ->excludes(error);

@@ -29,6 +29,15 @@ std::function<std::string(const std::string&)> whole_number(std::uint64_t most) 
   };
 }
 
+std::function<std::string(const std::string&)> positive_number() {
+  return [](const std::string& text) {
+    double number = 0;
+    const bool is_positive =
+        CLI::detail::lexical_cast(text, number) && number > 0 && number <= std::numeric_limits<double>::max();
+    return is_positive ? std::string() : fmt::format("'{}' is not a number above 0", text);
+  };
+}
+
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--seed", options.seed, "Another seed: other random numbers")
       ->capture_default_str()

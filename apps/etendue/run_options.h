@@ -25,6 +25,9 @@ struct RunOptions {
 /// where nothing is. CLI11 itself takes 010 for 8, and what is too large for the largest.
 std::function<std::string(const std::string&)> whole_number(std::uint64_t most);
 
+/// The same of a finite number above 0.
+std::function<std::string(const std::string&)> positive_number();
+
 /// Adds --seed, --threads, --isa and --dialect. `options` must live as long as the command.
 void add_run_options(CLI::App& command, RunOptions& options);
 

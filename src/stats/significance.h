@@ -1,7 +1,9 @@
-// When a p-value rejects: one level for a whole family of tests (Sidak).
+// When a p-value rejects: one level for a whole family of tests (Sidak, Holm).
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace etendue {
 
@@ -14,5 +16,11 @@ double sidak_level(double level, std::int64_t tests);
 /// Whether a test, one of `tests`, rejects at the family-wise `level`. A NaN p-value (no test was possible)
 /// is rejected: what could not be tested has not passed. Throws as sidak_level does.
 bool is_rejected(double p_value, double level, std::int64_t tests = 1);
+
+/// The p-values of a family, each raised so that those below a level are what Holm's procedure rejects at it:
+/// then a true hypothesis is rejected with at most that probability, however the tests depend on one another
+/// (Holm 1979, "A simple sequentially rejective multiple test procedure"). NaN, of tests that were not
+/// possible, stays, and counts as no member of the family.
+std::vector<double> holm_adjusted(std::span<const double> p_values);
 
 }  // namespace etendue

@@ -19,7 +19,7 @@ import tempfile
 
 # scenefile comes early because the plugins of every family state their parameters through it.
 FOLDERS = ["base", "stats", "scenefile", "sampler", "image", "film", "geometry", "texture", "bsdf", "medium", "light",
-           "lightsampler", "scene", "integrator", "lint", "render", "noritest", "course"]
+           "lightsampler", "scene", "integrator", "lint", "render", "noritest", "verify", "course"]
 TOPS = ["src", "apps", "tests", "bench", "include"]
 MAX_HEADER_LINES = 150
 XSIMD_HOME = "src/base/simd.h"
