@@ -145,6 +145,9 @@ WrittenFiles write_outputs(const Rendering& rendering) {
   const bool is_partial = std::any_of(images.begin(), images.end(), went_elsewhere);
   if (rendering.pixels_rendered() > 0) {
     Image image = to_image(result.film, rendering.errors.intervals);
+    for (Channel& channel : layer_channels(rendering.layers.of_image, rendering.loaded.scene,
+                                           {rendering.settings, result, rendering.errors.intervals}))
+      image.channels.push_back(std::move(channel));
     image.metadata = metadata(rendering);
     for (const WrittenFile& file : images)
       write(file, written.images, [&](const std::string& name) {

@@ -27,6 +27,7 @@ RenderResult render_pilot(const Scene& scene, const RenderSettings& settings, in
   of_pilot.samples_per_pixel = samples;
   of_pilot.replicates.reset();
   of_pilot.layers.clear();
+  of_pilot.noise_parts.reset();
   of_pilot.seed = hash64(settings.seed ^ hash64(std::uint64_t(samples)));
   RenderResult result = render(scene, of_pilot, {}, stop);
   pilot.samples += result.counts.samples;

@@ -13,7 +13,7 @@ namespace etendue {
 
 class PixelBlocks {
  public:
-  explicit PixelBlocks(const TileJob& job)
+  PixelBlocks(const TileJob& job, std::size_t layers)
       : job_(job),
         area_(job.unit.pixels),
         samples_(int(job.unit.samples_per_pixel())),
@@ -21,7 +21,7 @@ class PixelBlocks {
         x_(area_.x_begin),
         y_(area_.y_begin) {
     while (samples_ <= block_capacity / (2 * width_ * height_)) (width_ > height_ ? height_ : width_) *= 2;
-    const std::size_t images = 1 + job.settings->layers.size();
+    const std::size_t images = 1 + layers;
     job.means->resize(images * image_size());
     sums_.resize(images);
   }
@@ -59,7 +59,7 @@ class PixelBlocks {
   /// Takes in the block's radiance, and moves on.
   void take_means(const SampleBlock& block) {
     take_means(block.radiance, 0);
-    for (std::size_t k = 0; k < block.layers.size(); ++k) take_means(block.layers[k].radiance, k + 1);
+    for (std::size_t k = 0; k < block.layers.size(); ++k) take_means(block.layers[k], k + 1);
     first_sample_ += samples_in_block_;
     if (first_sample_ < samples_) return;
     first_sample_ = 0;
