@@ -5,6 +5,7 @@
 #include "integrator/integrator.h"
 #include "medium/homogeneous.h"
 #include "noritest/noritest.h"
+#include "render/image_layers.h"
 #include "render/isa.h"
 #include "render/render.h"
 #include "sampler/sampler.h"
@@ -89,6 +90,8 @@ Json describe_program() {
   json["phases"] = describe(phase_plugins());
   json["lights"] = describe(light_plugins());
   json["tests"] = describe(test_plugins());
+  for (const KnownLayer& layer : known_layers())
+    json["layers"].push_back({{"name", layer.name}, {"meaning", layer.meaning}});
   return json;
 }
 
@@ -101,13 +104,13 @@ void print(const Json& json) {
     fmt::print(" {} {}", name, version.get<std::string>());
   fmt::print("\n");
   for (const char* family : {"integrators", "light_samplers", "samplers", "cameras", "filters", "shapes",
-                             "bsdfs", "textures", "media", "phases", "lights", "tests"}) {
+                             "bsdfs", "textures", "media", "phases", "lights", "tests", "layers"}) {
     fmt::print("\n{}\n", family);
     for (const Json& plugin : json[family]) {
       fmt::print("  {}: {}\n", plugin["name"].get<std::string>(), plugin["meaning"].get<std::string>());
       if (plugin.contains("by_default"))
         fmt::print("    by default: {}\n", plugin["by_default"].get<std::string>());
-      for (const Json& parameter : plugin["parameters"]) {
+      for (const Json& parameter : plugin.value("parameters", Json::array())) {
         const auto text = [&](const char* key) { return parameter[key].get<std::string>(); };
         const std::string unit = text("unit").empty() ? "" : " " + text("unit");
         const std::string value = parameter["is_required"].get<bool>() ? "required"

@@ -5,6 +5,7 @@
 #include "interrupt.h"
 #include "lifted_lights.h"
 #include "messages.h"
+#include "noise_report.h"
 #include "output_files.h"
 #include "pilots.h"
 #include "plugin.h"
@@ -78,6 +79,7 @@ int run(const RenderOptions& options) {
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
   const std::vector<Region> regions =
       regions_of(options.regions, loaded.scene.camera.width_px, loaded.scene.camera.height_px);
+  const RenderLayers layers = render_layers(options, loaded.scene.lights, settings);
   check_settings(settings);
   LintSubject subject{loaded.scene, loaded.places, settings.integrator, settings.samples_per_pixel};
   const std::vector<Finding> findings = lint(subject, brief);
@@ -104,13 +106,14 @@ int run(const RenderOptions& options) {
   announce(options, description, loaded, settings);
   RenderResult rendered = render_with_progress(loaded.scene, settings, options.is_quiet);
   ImageErrors errors = errors_of(rendered, settings, regions, options.confidence);
-  const Rendering rendering{options,           description, loaded, settings, hash, std::move(rendered),
-                            std::move(errors), pilots};
+  const Rendering rendering{
+      options, description, loaded, settings, layers, hash, std::move(rendered), std::move(errors), pilots};
   const RenderResult& result = rendering.result;
   const WrittenFiles written = write_outputs(rendering);
   report_invalid(rendering);
   report_dark(rendering, subject);
   report_errors(rendering);
+  report_noise(rendering);
   say_what_was_saved(rendering, written);
   if (!options.is_quiet)
     say("{} in {}: {:.1f} million samples a second\n", result.is_interrupted ? "interrupted" : "done",

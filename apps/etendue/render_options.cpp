@@ -91,7 +91,8 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
                   "[path, direct_light: 1 or 4, as a pilot finds; others: 1, or as the keys of the file say]")
       ->check(number);
   command.add_option("--weights", options.heuristic,
-                     "How light samples and BSDF samples share light that both find: balance or power "
+                     "How light samples and BSDF samples share light that both find: balance, power or "
+                     "maximum "
                      "[path, direct_light: power; others: balance; or the file's]");
 }
 
@@ -157,6 +158,17 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
                   "NAME=X0,Y0,X1,Y1: say mean, error and checks of these pixels (X1 and Y1 are not of them) "
                   "too, in words and in --stats; may be repeated")
       ->allow_extra_args(false);
+  command
+      .add_option(
+          "--layers", options.layers,
+          "LIST: parts of the image, and what other tools ask for, as layers of the EXR, with commas "
+          "between: light,technique,depth, position,distance,normal,albedo,id,samples,variance_share. "
+          "See etendue info")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_flag("--noise", options.is_noise_told,
+                   "Say which lights and techniques the variance comes from, and of which it is infinite, in "
+                   "words and in --stats");
   add_run_options(command, options.run);
   command.add_option("--stats", options.stats_file, "JSON file for settings, times and counts");
   command.add_option("--replay", options.replay,

@@ -23,6 +23,7 @@ struct RenderOptions {
   std::vector<std::string> outputs;
   std::string sampler, replicates_by, stats_file, replay, plugin;
   std::vector<std::string> regions;  ///< As they were given.
+  std::vector<std::string> layers;   ///< Names of known_layers.
   std::optional<int> samples_per_pixel, replicates;
   double confidence = 0.95;
   std::optional<double> seconds, relative_error;  ///< Instead of a number of samples.
@@ -30,7 +31,7 @@ struct RenderOptions {
   IntegratorOptions integrator;
   RunOptions run;
   bool is_quiet = false, is_strict = false, is_in_sample_order = false, is_watertight = false,
-       is_adaptive = false;
+       is_adaptive = false, is_noise_told = false;
 };
 
 /// Adds --integrator and the options that change it. `options` must live as long as the command.

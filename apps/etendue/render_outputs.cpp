@@ -15,15 +15,6 @@ namespace etendue::app {
 
 namespace {
 
-/// The number of samples of each pixel, where they differ.
-Channel samples_of_pixels(const SampleAllocation& allocation, const Film& film) {
-  Channel channel{"samples", {}};
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x)
-      channel.values.push_back(float(double(film.at(x, y).count) * allocation.at(x, y)));
-  return channel;
-}
-
 Image to_image(const Film& film, const std::vector<PixelInterval>& intervals) {
   Image image;
   image.width = film.width();
@@ -156,8 +147,9 @@ WrittenFiles write_outputs(const Rendering& rendering) {
   const bool is_partial = std::any_of(images.begin(), images.end(), went_elsewhere);
   if (rendering.pixels_rendered() > 0) {
     Image image = to_image(result.film, rendering.errors.intervals);
-    if (rendering.settings.allocation)
-      image.channels.push_back(samples_of_pixels(*rendering.settings.allocation, result.film));
+    for (Channel& channel : layer_channels(rendering.layers.of_image, rendering.loaded.scene,
+                                           {rendering.settings, result, rendering.errors.intervals}))
+      image.channels.push_back(std::move(channel));
     image.metadata = metadata(rendering);
     for (const WrittenFile& file : images)
       write(file, written.images, [&](const std::string& name) {

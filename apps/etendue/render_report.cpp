@@ -2,6 +2,7 @@
 
 #include "error_report.h"
 #include "messages.h"
+#include "noise_report.h"
 #include "render/replay.h"
 
 #include <algorithm>
@@ -171,6 +172,7 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   json["mean"] = {mean.r, mean.g, mean.b};
   json["mean_luminance"] = luminance(mean);
   add_error_stats(rendering, json);
+  add_noise_stats(rendering, json);
   json["triangles"] = loaded.scene.geometry.triangle_count();
   json["lights"] = loaded.scene.lights.count();
   json["peak_memory_bytes"] = peak_memory_bytes();

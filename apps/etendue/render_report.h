@@ -4,6 +4,7 @@
 #include "image_errors.h"
 #include "lint/lint.h"
 #include "pilots.h"
+#include "render_layers.h"
 #include "render_options.h"
 #include "scenefile/scene_desc.h"
 
@@ -19,6 +20,7 @@ struct Rendering {
   const SceneDesc& description;
   const LoadedScene& loaded;
   const RenderSettings& settings;
+  const RenderLayers& layers;
   std::uint64_t scene_hash;
   RenderResult result;
   ImageErrors errors;

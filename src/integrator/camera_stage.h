@@ -70,7 +70,7 @@ template <class F>
       store_lanes(&path.pdf[i], F(std::numeric_limits<float>::infinity()));
       store_lanes(&path.eta[i], F(1));
       store_lanes(block.radiance, i, black<F>());
-      for (LayerColumn& layer : block.layers) store_lanes(layer.radiance, i, black<F>());
+      for (ColorColumn& layer : block.layers) store_lanes(layer, i, black<F>());
     }
   };
   const Camera& camera = scene.camera;
@@ -97,7 +97,7 @@ void weigh_by_filter(const Scene& scene, SampleBlock& block) {
       store_lanes(sums, i, load_lanes<F>(sums, i) * load_lanes<F>(&block.filter_weight[i]));
   };
   weigh(block.radiance);
-  for (LayerColumn& layer : block.layers) weigh(layer.radiance);
+  for (ColorColumn& layer : block.layers) weigh(layer);
 }
 
 }  // namespace etendue

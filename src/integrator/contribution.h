@@ -2,8 +2,9 @@
 // the layers that collect a part of it.
 #pragma once
 
-#include "integrator/path_rules.h"
 #include "integrator/sample_block.h"
+
+#include <utility>
 
 namespace etendue {
 
@@ -37,19 +38,34 @@ void add_radiance(SampleBlock& block, int i, const Mask<F>& m, const Color<F>& a
   add_to_samples<F>(block, block.radiance, i, m, added);
 }
 
+/// Adds to the layers that take it; apart, so that its code does not weigh on images without layers.
+template <class F>
+[[gnu::noinline]] void add_to_layers(SampleBlock& block, int i, const Mask<F>& m, const Color<F>& added,
+                                     const Contribution<F>& from) {
+  ColorColumn* layers = block.layers.data();
+  for (const LayerSet& set : block.layer_sets) {
+    ColorColumn* const of_set = std::exchange(layers, layers + set.count());
+    const std::int32_t path_part = set.part_of_path(from.technique, from.depth);
+    if (path_part == LayerSet::none) continue;
+    if (set.light_part.size() == 0) {
+      add_to_samples<F>(block, of_set[path_part], i, m, added);
+      continue;
+    }
+    const Int<F> light_part = set.light_part.at(select(m, from.light, Int<F>(0)));
+    for_each_unique<F>(light_part, mask_and(m, less(Int<F>(LayerSet::none), light_part)),
+                       [&](std::int32_t part, const Mask<F>& lanes) {
+                         add_to_samples<F>(block, of_set[part * set.path_parts + path_part], i, lanes, added);
+                       });
+  }
+}
+
 /// Adds what a light contributes to the radiance of the samples that the paths i, i + 1 ... belong to, and to
 /// the layers that take it.
 template <class F>
 void add_contribution(SampleBlock& block, int i, const Mask<F>& m, const Color<F>& added,
                       const Contribution<F>& from) {
   add_to_samples<F>(block, block.radiance, i, m, added);
-  for (LayerColumn& layer : block.layers) {
-    const LayerRule& rule = layer.rule;
-    if (rule.technique && *rule.technique != from.technique) continue;
-    if (from.depth < rule.least_depth || from.depth > rule.most_depth) continue;
-    const Mask<F> lanes = rule.light ? mask_and(m, equal(from.light, Int<F>(*rule.light))) : m;
-    if (any(lanes)) add_to_samples<F>(block, layer.radiance, i, lanes, added);
-  }
+  if (!block.layers.empty()) add_to_layers<F>(block, i, m, added, from);
 }
 
 }  // namespace etendue

@@ -12,8 +12,9 @@ namespace {
 
 using Type = Parameter::Type;
 
-const Parameter heuristic_parameter{"heuristic", Type::text, "balance", "", "balance or power (exponent 2)"};
-const Parameter power_parameter{"heuristic", Type::text, "power", "", "balance or power (exponent 2)"};
+constexpr std::string_view heuristics_text = "balance, power (exponent 2) or maximum";
+const Parameter heuristic_parameter{"heuristic", Type::text, "balance", "", std::string(heuristics_text)};
+const Parameter power_parameter{"heuristic", Type::text, "power", "", std::string(heuristics_text)};
 
 /// McGill's integrator of the dialect nori, with numbers of samples of its own.
 const Plugin sampling_direct_plugin{
@@ -116,8 +117,9 @@ const Row* find(std::string_view name) {
 Heuristic heuristic_named(std::string_view name, const Location& where) {
   if (name == "balance") return Heuristic::balance;
   if (name == "power") return Heuristic::power;
+  if (name == "maximum") return Heuristic::maximum;
   throw InputError(where, fmt::format("unknown heuristic '{}'", name),
-                   known_names(name, {"balance", "power"}));
+                   known_names(name, {"balance", "power", "maximum"}));
 }
 Heuristic heuristic_of(const Parameters& parameters) {
   return heuristic_named(parameters.text("heuristic"), parameters.location("heuristic"));
@@ -157,6 +159,8 @@ std::string_view name_of(Heuristic heuristic) {
       return "balance";
     case Heuristic::power:
       return "power";
+    case Heuristic::maximum:
+      return "maximum";
   }
   return "";
 }

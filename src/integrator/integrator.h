@@ -34,7 +34,7 @@ struct IntegratorSettings {
 };
 
 const std::vector<Plugin>& integrator_plugins();
-/// "balance", "power"; empty where weights do not depend on densities.
+/// "balance", "power", "maximum"; empty where weights do not depend on densities.
 std::string_view heuristic_name(const IntegratorSettings& integrator);
 
 /// The name and all rules, on one line: "mis heuristic=power light_samples=3 sampler=power bsdf_samples=2".
@@ -56,8 +56,8 @@ IntegratorSettings with_candidates(const IntegratorSettings& integrator, int can
 /// The same with so many light samples at the first vertex, 1 to 65536; those behind take as many as before.
 /// Throws InputError for other numbers, and where the integrator samples no lights.
 IntegratorSettings with_shadow_rays(const IntegratorSettings& integrator, int shadow_rays);
-/// The same with weights by "balance" or "power". Throws InputError for another name, and where the weights
-/// of the integrator do not depend on densities.
+/// The same with weights by "balance", "power" or "maximum". Throws InputError for another name, and where
+/// the weights of the integrator do not depend on densities.
 IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::string_view heuristic);
 
 /// The same with light samples by another technique, of light_technique_from_name. Throws InputError for an

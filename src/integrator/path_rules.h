@@ -12,8 +12,9 @@ namespace etendue {
 
 /// How two techniques share the light that both can find. average: each counted half. balance, power: by
 /// multiple importance sampling (Veach 1997, "Robust Monte Carlo methods for light transport simulation",
-/// eq. 9.8, and section 9.2.2.2 with exponent 2).
-enum class Heuristic { average, balance, power };
+/// eq. 9.8, and section 9.2.2.2 with exponent 2). maximum: by the technique of the higher density alone (same
+/// section).
+enum class Heuristic { average, balance, power, maximum };
 
 struct LightSamples {
   int count = 1;                         ///< At each vertex.

@@ -3,12 +3,13 @@
 
 #include "integrator/block_counts.h"
 #include "integrator/columns.h"
-#include "integrator/layer_rule.h"
+#include "integrator/layer_set.h"
 #include "integrator/shadow_rays.h"
 #include "lightsampler/light_cuts.h"
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace etendue {
@@ -32,11 +33,6 @@ struct PathColumns {
   ReceiverColumns receiver;
 };
 
-struct LayerColumn {
-  LayerRule rule;
-  ColorColumn radiance;
-};
-
 struct SampleBlock;
 
 /// Benchmarks and replays look on. `vertex` is the number of the vertex.
@@ -56,7 +52,8 @@ struct SampleBlock {
   Column<std::int32_t> pixel_x, pixel_y;
   Column<float> filter_weight;  ///< Set and read only where the pixel filter has negative lobes.
   ColorColumn radiance;
-  std::vector<LayerColumn> layers;  ///< Parts of the radiance; mostly none.
+  std::span<const LayerSet> layer_sets;
+  std::vector<ColorColumn> layers;  ///< Parts of the radiance, of one set after the other; mostly none.
 
   PathColumns path;
   bool is_in_sample_order = true;  ///< Row i of `path` is sample i: no path has been left out yet.

@@ -18,6 +18,12 @@ F mis_weight(Heuristic heuristic, const F& pdf_own, const F& pdf_other) {
       return select(pdf_own < F(std::numeric_limits<float>::infinity()), F(0.5f), F(1));
     case Heuristic::balance:
       return F(1) / (F(1) + pdf_other / pdf_own);
+    case Heuristic::maximum: {
+      // About equal densities share: each side rounds its own way, and both or none might count.
+      constexpr float shared = 1e-4f;
+      const F lead = F(2) / (F(1) + pdf_other / pdf_own) - F(1);
+      return min(max(F(0.5f) + lead * F(0.5f / shared), F(0)), F(1));
+    }
     case Heuristic::power:
       break;
   }

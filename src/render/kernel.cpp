@@ -5,6 +5,10 @@
 #include "integrator/run_integrator.h"
 #include "render/pixel_blocks.h"
 
+#include <algorithm>
+#include <array>
+#include <numeric>
+
 namespace etendue {
 
 namespace {
@@ -25,8 +29,7 @@ void set_invalid_aside(TileJob& job, SampleBlock& block, const PixelBlocks& pixe
           is_finite_nonnegative(sample.b))
         continue;
       radiance.r[s] = radiance.g[s] = radiance.b[s] = 0;
-      for (LayerColumn& layer : block.layers)
-        layer.radiance.r[s] = layer.radiance.g[s] = layer.radiance.b[s] = 0;
+      for (ColorColumn& layer : block.layers) layer.r[s] = layer.g[s] = layer.b[s] = 0;
       if (s >= block.count) continue;
       job.invalid->add(
           {block.pixel_x[s], block.pixel_y[s], pixels.replicate_of(s), pixels.index_of(s), sample});
@@ -34,11 +37,30 @@ void set_invalid_aside(TileJob& job, SampleBlock& block, const PixelBlocks& pixe
   }
 }
 
+/// Luminances of the samples' parts that are in layers, without the filter's weights.
+void note_largest(const SampleBlock& block, std::span<LargestValues> largest) {
+  const std::span layers = std::span(block.layers).last(largest.size());
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    alignas(64) std::array<float, lane_count_v<F>> each;
+    F positive(0);
+    for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
+      const F values = luminance(load_lanes<F>(layers[k], i));
+      positive = positive + select(values > F(0), F(1), F(0));
+      if (!any(values > F(largest[k].threshold()))) continue;
+      store_lanes(each.data(), values);
+      for (int s = i; s < std::min(i + lane_count_v<F>, block.count); ++s)
+        largest[k].add(each[std::size_t(s - i)]);
+    }
+    store_lanes(each.data(), positive);
+    largest[k].count(std::int64_t(std::accumulate(each.begin(), each.end(), 0.0f)));
+  }
+}
+
 void render_tile(TileJob& job) {
   SampleBlock& block = *job.block;
-  PixelBlocks pixels(job);
-  block.layers.resize(job.settings->layers.size());
-  for (std::size_t k = 0; k < block.layers.size(); ++k) block.layers[k].rule = job.settings->layers[k];
+  block.layer_sets = job.layer_sets;
+  block.layers.resize(layer_count(job.layer_sets));
+  PixelBlocks pixels(job, block.layers.size());
   block.clock.start();
   while (pixels.next(block)) {
     if (job.must_stop && (*job.must_stop)()) {
@@ -48,6 +70,7 @@ void render_tile(TileJob& job) {
     run_integrator<F>(job.settings->integrator, *job.scene, *job.light_sampler, block,
                       job.settings->is_reordering);
     set_invalid_aside(job, block, pixels);
+    note_largest(block, job.largest);
     weigh_by_filter<F>(*job.scene, block);
     pixels.take_means(block);
     block.clock.finish(Stage::sums);

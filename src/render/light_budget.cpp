@@ -106,6 +106,7 @@ std::optional<BudgetPilot> light_budget_for(const Scene& scene, const RenderSett
   RenderSettings of_pilot = settings;
   of_pilot.replicates_by = ReplicatesBy::scrambling;
   of_pilot.layers.clear();
+  of_pilot.noise_parts.reset();
   of_pilot.seed = hash64(0xb0d9e7);  // The same for all seeds, so that their images have the same budget.
   const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
   LightCutStore cuts(LightCuts::tiles_across(scene.camera.width_px) *

@@ -1,5 +1,7 @@
 #include "render/pass.h"
 
+#include "film/part_covariances.h"
+
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -25,6 +27,7 @@ struct Worker {
   std::vector<Color<double>> means;
   InvalidSamples invalid_of_tile, invalid;
   RenderCounts counts;
+  std::vector<LargestValues> largest;  ///< Of each noise part.
 };
 
 /// Whether a pass goes on: asked by all threads, often.
@@ -87,6 +90,12 @@ class StopWatch {
   std::atomic<bool> has_little_left_{false};
 };
 
+std::vector<LayerSet> layer_sets_of(const RenderSettings& settings) {
+  std::vector<LayerSet> sets = settings.layers;
+  if (settings.noise_parts) sets.push_back(*settings.noise_parts);
+  return sets;
+}
+
 }  // namespace
 
 struct Passes::Threads {
@@ -99,23 +108,31 @@ struct Passes::Threads {
   const int count;
   LightCutStore cuts;
   tbb::task_arena arena;
+  const std::vector<LayerSet> layer_sets = layer_sets_of(settings);
+  const std::size_t noise_parts = settings.noise_parts ? settings.noise_parts->count() : 0;
+  PartCovariances noise{noise_parts > 0 ? scene.camera.width_px : 0, scene.camera.height_px, noise_parts};
   tbb::enumerable_thread_specific<Worker> workers{};
   std::optional<double> seconds_per_replicate{};  ///< As the last pass took.
   std::atomic<double> stop_requested_at{0};       ///< Of Clock; 0: not seen yet.
 
   /// False where it was stopped: nothing of the tile is in the film then.
+  /// \param covariances of the tile: the image, and each noise part
   bool render_tile(const WorkUnit& tile, const std::function<bool()>& must_stop,
-                   std::vector<FilmStack>& films, ReplicateLuminances* luminances) {
+                   std::vector<FilmStack>& films, ReplicateLuminances* luminances,
+                   std::span<double> covariances) {
     if (must_stop()) return false;
     Worker& worker = workers.local();
     worker.block->cut_store = &cuts;
+    worker.largest.resize(noise_parts);
     TileJob job{.scene = &scene,
                 .light_sampler = &light_sampler,
                 .settings = &settings,
+                .layer_sets = layer_sets,
                 .unit = tile,
                 .block = worker.block.get(),
                 .means = &worker.means,
                 .invalid = &worker.invalid_of_tile,
+                .largest = worker.largest,
                 .must_stop = &must_stop};
     worker.block->counts = {};
     worker.invalid_of_tile = {};
@@ -129,20 +146,36 @@ struct Passes::Threads {
           film.add(x, y, of_pixel);
           if (luminances && &film == &films.front()) luminances->add(x, y, tile.first_replicate, of_pixel);
         }
+    if (noise_parts > 0) add_to_noise(tile, worker.means, covariances);
     worker.counts.samples += tile.samples();
     worker.counts += worker.block->counts;
     worker.invalid.add(worker.invalid_of_tile);
     return true;
   }
 
+  /// \param means of the tile's replicates: of the image, its layers and its noise parts
+  void add_to_noise(const WorkUnit& tile, std::span<const Color<double>> means,
+                    std::span<double> covariances) {
+    const auto replicates = std::size_t(tile.replicates);
+    const std::size_t of_image = means.size() / (1 + layer_count(layer_sets));
+    const Color<double>* image = means.data();
+    const Color<double>* parts = means.data() + means.size() - noise_parts * of_image;
+    for (int y = tile.pixels.y_begin; y < tile.pixels.y_end; ++y)
+      for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, image += replicates, parts += replicates)
+        noise.add(x, y, {image, replicates}, parts, of_image, covariances);
+  }
+
   /// Of all workers, which begin anew.
   void take_counts(PassResult& result) {
+    result.largest.resize(noise_parts);
     for (Worker& worker : workers) {
       result.counts.samples += worker.counts.samples;
       result.counts += worker.counts;
       result.invalid.add(worker.invalid);
+      for (std::size_t k = 0; k < worker.largest.size(); ++k) result.largest[k].add(worker.largest[k]);
       worker.counts = {};
       worker.invalid = {};
+      worker.largest.clear();
     }
   }
 };
@@ -209,8 +242,13 @@ PassResult Passes::render(std::vector<FilmStack>& films, int end, ReplicateLumin
   const std::function<bool()> must_stop = [&] { return watch.must_stop(); };
   std::mutex progress_mutex;
   for (FilmStack& each : films) each.begin_pass(std::uint64_t(end));
+  // By tile, so that sums do not depend on the threads' order.
+  const std::size_t sums = 1 + threads.noise_parts;
+  std::vector<double> covariances(tiles.size() * sums);
   const auto render_tile = [&](std::size_t k) {
-    if (!threads.render_tile(tiles[k], must_stop, films, luminances)) return;
+    if (!threads.render_tile(tiles[k], must_stop, films, luminances,
+                             std::span(covariances).subspan(k * sums, sums)))
+      return;
     watch.count_tile();
     if (!threads.progress) return;
     const std::lock_guard lock(progress_mutex);
@@ -223,6 +261,8 @@ PassResult Passes::render(std::vector<FilmStack>& films, int end, ReplicateLumin
 
   PassResult result;
   threads.take_counts(result);
+  result.covariances.resize(sums);
+  for (std::size_t k = 0; k < covariances.size(); ++k) result.covariances[k % sums] += covariances[k];
   result.is_complete = watch.tiles_done() == tiles.size();
   if (result.is_complete || is_first_pass)
     for (FilmStack& each : films) each.commit_pass();

@@ -13,6 +13,8 @@ namespace etendue {
 struct PassResult {
   RenderCounts counts{};
   InvalidSamples invalid{};
+  std::vector<double> covariances{};     ///< Of PartCovariances: the image, and each noise part.
+  std::vector<LargestValues> largest{};  ///< Of each noise part's samples.
   double seconds = 0;
   bool is_complete = false;
 };

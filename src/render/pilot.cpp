@@ -31,6 +31,7 @@ RenderResult render_with(const Scene& scene, const RenderSettings& settings, int
   of_pilot.samples_per_pixel = samples;
   of_pilot.replicates.reset();
   of_pilot.layers.clear();
+  of_pilot.noise_parts.reset();
   of_pilot.seed = hash64(settings.seed ^ hash64(purpose));
   return render(scene, of_pilot, {}, stop);
 }

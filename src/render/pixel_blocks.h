@@ -16,8 +16,8 @@ namespace etendue {
 
 class PixelBlocks {
  public:
-  explicit PixelBlocks(const TileJob& job) : job_(job), pixels_(pixels_in_order(job.unit)) {
-    const std::size_t images = 1 + job.settings->layers.size();
+  PixelBlocks(const TileJob& job, std::size_t layers) : job_(job), pixels_(pixels_in_order(job.unit)) {
+    const std::size_t images = 1 + layers;
     job.means->resize(images * image_size());
     sums_.resize(images);
   }
@@ -57,7 +57,7 @@ class PixelBlocks {
   /// Takes in the block's radiance, and moves on.
   void take_means(const SampleBlock& block) {
     take_means(block.radiance, 0);
-    for (std::size_t k = 0; k < block.layers.size(); ++k) take_means(block.layers[k].radiance, k + 1);
+    for (std::size_t k = 0; k < block.layers.size(); ++k) take_means(block.layers[k], k + 1);
     first_sample_ += samples_in_block_;
     if (first_sample_ < samples_) return;
     first_sample_ = 0;

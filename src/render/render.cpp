@@ -20,13 +20,15 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
   const int replicates = settings.replicate_count();
   const double pixels = double(scene.camera.width_px) * scene.camera.height_px;
   std::vector<FilmStack> films;  // Of the image, and then of each layer.
-  for (std::size_t k = 0; k <= settings.layers.size(); ++k)
+  for (std::size_t k = 0; k <= layer_count(settings.layers); ++k)
     films.emplace_back(scene.camera.width_px, scene.camera.height_px);
   ReplicateLuminances luminances;  // Of one replicate alone there is no spread.
   if (replicates > 1) luminances = ReplicateLuminances(scene.camera.width_px, scene.camera.height_px, 0);
   Passes passes(scene, settings, progress, stop);
   RenderCounts counts;
   InvalidSamples invalid;
+  std::vector<double> covariances(1 + (settings.noise_parts ? settings.noise_parts->count() : 0));
+  std::vector<LargestValues> largest(covariances.size() - 1);
   bool is_complete = true;
   int done = 0;
   // With a second replicate there is an error bar, which a stop waits for if it may.
@@ -40,6 +42,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
     counts.samples += pass.counts.samples;
     counts += pass.counts;
     invalid.add(pass.invalid);
+    for (std::size_t k = 0; k < pass.covariances.size(); ++k) covariances[k] += pass.covariances[k];
+    for (std::size_t k = 0; k < pass.largest.size(); ++k) largest[k].add(pass.largest[k]);
     is_complete = pass.is_complete;
     seconds_per_replicate = pass.seconds / (end - done);
     if (is_complete) done = end;
@@ -53,6 +57,8 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
                       .is_fragment = done == 0};
   for (std::size_t k = 1; k < films.size(); ++k)
     result.layers.push_back(passes.take_film(std::move(films[k])));
+  for (std::size_t k = 0; k < largest.size(); ++k)
+    result.noise.push_back({covariances[k + 1] / covariances[0], std::move(largest[k])});
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

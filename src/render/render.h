@@ -6,11 +6,12 @@
 #include "film/sample_allocation.h"
 #include "integrator/block_counts.h"
 #include "integrator/integrator.h"
-#include "integrator/layer_rule.h"
+#include "integrator/layer_set.h"
 #include "render/invalid_samples.h"
 #include "render/isa.h"
 #include "sampler/replicates.h"
 #include "scene/scene.h"
+#include "stats/largest_values.h"
 
 #include <atomic>
 #include <cstdint>
@@ -32,8 +33,9 @@ struct RenderSettings {
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all that the process may use.
   Isa isa = Isa::scalar;
-  bool is_reordering = true;      ///< Aim shadow packets; off only to show that it changes nothing.
-  std::vector<LayerRule> layers;  ///< Parts of the image to be kept apart; each costs time and memory.
+  bool is_reordering = true;            ///< Aim shadow packets; off only to show that it changes nothing.
+  std::vector<LayerSet> layers;         ///< Parts of the image to be kept apart; each costs time and memory.
+  std::optional<LayerSet> noise_parts;  ///< Parts of which only the noise is to be known.
 
   int replicate_count() const { return replicates.value_or(default_replicates(samples_per_pixel)); }
   int samples_per_replicate() const { return samples_per_pixel / replicate_count(); }
@@ -50,9 +52,19 @@ struct RenderCounts : BlockCounts {
   double lane_occupancy() const { return lanes > 0 ? double(paths) / double(lanes) : 0; }
 };
 
+/// What a part of the image has of its noise.
+struct PartNoise {
+  /// Its covariance with the image over the variance of the image, by the luminances of replicates, summed
+  /// over pixels: of all parts together 1, of one below 0 where it makes up for what others have too much.
+  /// NaN where no variance is known.
+  double variance_share;
+  LargestValues largest;  ///< Luminances of its samples, without the pixel filter's weights.
+};
+
 struct RenderResult {
   Film film;  ///< Where interrupted, of `replicates` replicates; of a fragment, some pixels have count 0.
-  std::vector<Film> layers{};  ///< As the settings list them, of the same pixels and replicates.
+  std::vector<Film> layers{};      ///< Of one set after the other, of the same pixels and replicates.
+  std::vector<PartNoise> noise{};  ///< Of each of the settings' noise_parts.
   int replicates = 0;
   ReplicateLuminances luminances{};  ///< Of the image, whose first `replicates` count.
   RenderCounts counts{};

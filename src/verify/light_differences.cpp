@@ -45,12 +45,15 @@ MeanMoments sum_of(const Film& film) {
 std::vector<LightDifference> light_differences(const Scene& scene, RenderSettings a, RenderSettings b,
                                                double level, const StopRequest* stop) {
   const std::vector<std::int32_t> lights = lights_by_power(scene.lights);
-  for (const std::int32_t light : lights) {
-    LayerRule rule;
-    rule.light = light;
-    a.layers.push_back(rule);
-    b.layers.push_back(rule);
+  LayerSet by_light;
+  by_light.light_parts = std::int32_t(lights.size());
+  for (std::int32_t light = 0; light < scene.lights.count(); ++light) {
+    const auto place = std::ranges::find(lights, light);
+    by_light.light_part.push_back(place == lights.end() ? LayerSet::none
+                                                        : std::int32_t(place - lights.begin()));
   }
+  a.layers.push_back(by_light);
+  b.layers.push_back(by_light);
   const RenderResult of_a = render(scene, a, {}, stop), of_b = render(scene, b, {}, stop);
   std::vector<LightDifference> differences;
   if (of_a.is_interrupted || of_b.is_interrupted) return differences;

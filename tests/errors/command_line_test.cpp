@@ -2,6 +2,7 @@
 #include "image/image_file.h"
 #include "support/program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <gmock/gmock.h>
@@ -74,10 +75,11 @@ TEST_F(CommandLine, LintSaysWhatIsOddAsJsonToo) {
 TEST_F(CommandLine, HelpOfRenderNamesEveryOption) {
   const ProgramResult help = run({"render", "--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* name : {"SCENE",        "-o,--output",     "--integrator",  "--sampler", "--light-sampler",
-                           "--technique",  "--candidates",    "--shadow-rays", "--weights", "--spp",
-                           "--replicates", "--replicates-by", "--seed",        "--threads", "--isa",
-                           "--stats",      "--quiet",         "--strict",      "--dialect", "--replay"})
+  for (const char* name :
+       {"SCENE",        "-o,--output",   "--integrator", "--sampler", "--light-sampler", "--technique",
+        "--candidates", "--shadow-rays", "--weights",    "--spp",     "--replicates",    "--replicates-by",
+        "--seed",       "--threads",     "--isa",        "--stats",   "--quiet",         "--strict",
+        "--dialect",    "--replay",      "--layers",     "--noise"})
     EXPECT_THAT(help.out, HasSubstr(name));
 }
 
@@ -305,7 +307,14 @@ TEST_F(CommandLine, InfoListsEveryPluginWithItsParameters) {
       EXPECT_EQ(integrator.at("by_default"),
                 "path_mis heuristic=balance light_samples=1 sampler=uniform bsdf_samples=1");
     }
-  EXPECT_EQ(run({"info"}).exit_code, 0);
+  for (const char* name : {"light", "technique", "depth", "position", "distance", "normal", "albedo", "id",
+                           "samples", "variance_share"})
+    EXPECT_TRUE(std::any_of(info.at("layers").begin(), info.at("layers").end(), [&](const auto& layer) {
+      return layer.at("name") == name && !layer.at("meaning").get<std::string>().empty();
+    })) << name;
+  const ProgramResult text = run({"info"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.out, HasSubstr("\n  variance_share: "));
 }
 
 TEST_F(CommandLine, ProgressWithoutATerminalIsAtMostALineASecond) {

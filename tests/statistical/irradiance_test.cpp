@@ -18,7 +18,7 @@ namespace etendue {
 namespace {
 
 constexpr double family_level = 1e-5;
-constexpr int family_size = 150;  // At least as many tests as are made below.
+constexpr int family_size = 180;  // At least as many tests as are made below.
 
 struct Method {
   const char* name;
@@ -29,7 +29,8 @@ constexpr Method methods[]{{"light", "light", Heuristic::balance},
                            {"direct", "direct", Heuristic::balance},
                            {"average", "average", Heuristic::balance},
                            {"mis balance", "mis", Heuristic::balance},
-                           {"mis power", "mis", Heuristic::power}};
+                           {"mis power", "mis", Heuristic::power},
+                           {"mis maximum", "mis", Heuristic::maximum}};
 
 constexpr int side_px = 32;
 const Vec3d eye{1.5, -2.5, 2};

@@ -5,12 +5,15 @@
 // Seen to fail when: light samples count as BSDF samples, or light that is met as light samples; depths of
 // either are one off; a light's id is the piece of it; layers are not emptied for the next block; they lack
 // the filter's weights; they keep what invalid samples had.
+#include "render/image_layers.h"
 #include "test_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <optional>
 
 namespace etendue {
 namespace {
@@ -54,7 +57,7 @@ LoadedScene scene_of(const SceneParts& parts = {}) {
 }
 
 /// Each replicate is one sample, so that a pixel's variance tells how large its samples are.
-RenderSettings settings_of(std::string_view integrator, const std::vector<LayerRule>& layers = {}) {
+RenderSettings settings_of(std::string_view integrator, const std::vector<LayerSet>& layers = {}) {
   RenderSettings settings = render_settings(integrator, samples, samples, 3);
   settings.replicates_by = ReplicatesBy::block;
   settings.layers = layers;
@@ -64,8 +67,8 @@ RenderSettings settings_of(std::string_view integrator, const std::vector<LayerR
 Film image(const SceneParts& parts, std::string_view integrator) {
   return render(scene_of(parts).scene, settings_of(integrator)).film;
 }
-Film layer(const SceneParts& parts, std::string_view integrator, const LayerRule& rule) {
-  return render(scene_of(parts).scene, settings_of(integrator, {rule})).layers.at(0);
+Film layer(const SceneParts& parts, std::string_view integrator, const LayerSet& set) {
+  return render(scene_of(parts).scene, settings_of(integrator, {set})).layers.at(0);
 }
 
 /// Pixels of which b is not a times a power of two, bit for bit.
@@ -84,26 +87,42 @@ int differing_pixels(const Film& a, const Film& b, double power_of_two = 1) {
 
 bool is_black(const Film& film) { return film.mean() == Color<double>{0, 0, 0}; }
 
-constexpr int any_depth = std::numeric_limits<int>::max();
-LayerRule of_depths(int least, int most) { return {{}, {}, least, most}; }
-LayerRule scattered_from(std::int32_t light, Technique technique) { return {light, technique, 1, any_depth}; }
+constexpr int all_depths = std::numeric_limits<int>::max();
 
-const std::vector<LayerRule> by_technique{{{}, Technique::light}, {{}, Technique::bsdf}};
-const std::vector<LayerRule> by_light{{rectangle, {}}, {sphere, {}}, {point, {}}, {sky, {}}};
-const std::vector<LayerRule> by_depth{of_depths(0, 0), of_depths(1, 1), of_depths(2, any_depth)};
-
-/// Every cell of the three together.
-std::vector<LayerRule> by_all() {
-  std::vector<LayerRule> rules;
-  for (LayerRule rule : by_depth)
-    for (const LayerRule& technique : by_technique)
-      for (const LayerRule& light : by_light) {
-        rule.technique = technique.technique;
-        rule.light = light.light;
-        rules.push_back(rule);
-      }
-  return rules;
+/// What one layer holds.
+struct Part {
+  std::optional<std::int32_t> light{};
+  std::optional<Technique> technique{};
+  int least_depth = 0, most_depth = all_depths;
+};
+LayerSet only(const Part& part) {
+  constexpr int depths = 4;
+  LayerSet set;
+  for (const Technique technique : {Technique::light, Technique::bsdf}) {
+    std::vector<std::int32_t>& by_depth = set.path_part[std::size_t(technique)];
+    by_depth.assign(depths, LayerSet::none);
+    for (int depth = part.least_depth; depth < depths && depth <= part.most_depth; ++depth)
+      if (!part.technique || *part.technique == technique) by_depth[std::size_t(depth)] = 0;
+  }
+  for (std::int32_t light = 0; part.light && light < light_count; ++light)
+    set.light_part.push_back(light == *part.light ? 0 : LayerSet::none);
+  return set;
 }
+LayerSet of_depths(int least, int most) { return only({{}, {}, least, most}); }
+LayerSet scattered_from(std::int32_t light, Technique technique) {
+  return only({light, technique, 1, all_depths});
+}
+
+LayerSet by_lights(LayerSet set = {}) {
+  set.light_parts = light_count;
+  for (std::int32_t light = 0; light < light_count; ++light) set.light_part.push_back(light);
+  return set;
+}
+const LayerSet by_technique = technique_layers();
+const LayerSet by_light = by_lights();
+const LayerSet by_depth{.path_parts = 3, .light_part = {}, .path_part = {{{0, 1, 2}, {0, 1, 2}}}};
+/// Every cell of the three together.
+const LayerSet by_all = by_lights({.path_parts = 6, .light_part = {}, .path_part = {{{0, 1, 2}, {3, 4, 5}}}});
 
 /// Samples are added up in floats, in the image and in layers in different order: each addition rounds by
 /// 2^-24 of what there is. The weights of a filter have either sign, but are of one size.
@@ -124,17 +143,23 @@ void expect_sum(const Film& image, const std::vector<Film>& layers, const std::s
   EXPECT_EQ(wrong, 0) << what << ": pixels of which the layers are not the sum";
 }
 
+std::vector<float> sorted(const LargestValues& largest) {
+  std::vector<float> values = largest.values();
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
 class LayersOf : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(LayersOf, AddUpToTheImage) {
   for (const char* filter : {"box", "mitchell"}) {
     const LoadedScene loaded = scene_of({.filter = filter});
-    for (const auto& [what, rules] : {std::pair{"by technique", by_technique},
-                                      {"by light", by_light},
-                                      {"by depth", by_depth},
-                                      {"by all three", by_all()}}) {
-      const RenderResult result = render(loaded.scene, settings_of(GetParam(), rules));
-      ASSERT_EQ(result.layers.size(), rules.size());
+    for (const auto& [what, set] : {std::pair{"by technique", by_technique},
+                                    {"by light", by_light},
+                                    {"by depth", by_depth},
+                                    {"by all three", by_all}}) {
+      const RenderResult result = render(loaded.scene, settings_of(GetParam(), {set}));
+      ASSERT_EQ(result.layers.size(), set.count());
       EXPECT_FALSE(is_black(result.film));
       expect_sum(result.film, result.layers, fmt::format("{}, {}", filter, what));
     }
@@ -143,23 +168,30 @@ TEST_P(LayersOf, AddUpToTheImage) {
 
 TEST_P(LayersOf, ThatTakeAllAreTheImageAndChangeNoBitOfIt) {
   const LoadedScene loaded = scene_of({.filter = "mitchell"});
-  const RenderResult result = render(loaded.scene, settings_of(GetParam(), {LayerRule{}}));
+  const RenderResult result = render(loaded.scene, settings_of(GetParam(), {LayerSet{}}));
   EXPECT_EQ(differing_pixels(result.film, result.layers[0]), 0);
   EXPECT_EQ(differing_pixels(result.film, image({.filter = "mitchell"}, GetParam())), 0);
 }
 
 TEST_P(LayersOf, HaveTheSameBitsForAnyNumberOfThreads) {
   const LoadedScene loaded = scene_of();
-  RenderSettings settings = settings_of(GetParam(), by_all());
+  RenderSettings settings = settings_of(GetParam(), {by_all});
+  settings.noise_parts = by_all;
   settings.threads = 1;
-  const std::vector<Film> by_one = render(loaded.scene, settings).layers;
+  const RenderResult by_one = render(loaded.scene, settings);
   settings.threads = 2;
-  const std::vector<Film> by_two = render(loaded.scene, settings).layers;
-  for (std::size_t k = 0; k < by_one.size(); ++k) EXPECT_EQ(differing_pixels(by_one[k], by_two[k]), 0) << k;
+  const RenderResult by_two = render(loaded.scene, settings);
+  for (std::size_t k = 0; k < by_one.layers.size(); ++k)
+    EXPECT_EQ(differing_pixels(by_one.layers[k], by_two.layers[k]), 0) << k;
+  for (std::size_t k = 0; k < by_one.noise.size(); ++k) {
+    // The tiles are others, and sums over them round.
+    EXPECT_NEAR(by_one.noise[k].variance_share, by_two.noise[k].variance_share, 1e-12) << k;
+    EXPECT_EQ(sorted(by_one.noise[k].largest), sorted(by_two.noise[k].largest)) << k;
+  }
 }
 
 TEST_P(LayersOf, ALightAreTheImageWhereTheOthersAreBlack) {
-  const std::vector<Film> layers = render(scene_of().scene, settings_of(GetParam(), by_light)).layers;
+  const std::vector<Film> layers = render(scene_of().scene, settings_of(GetParam(), {by_light})).layers;
   for (std::size_t light = 0; light < light_count; ++light) {
     SceneParts alone;
     for (std::size_t other = 0; other < light_count; ++other)
@@ -185,8 +217,8 @@ TEST(Layers, OfOneScatteringAreTheImageOfTheDirectIntegrator) {
   for (const auto& [paths, direct] :
        {std::pair{"path_ems", "light"}, {"path_mats", "direct"}, {"path_mis", "mis"}}) {
     EXPECT_EQ(differing_pixels(image({}, direct), layer({}, paths, of_depths(0, 1))), 0) << paths;
-    EXPECT_FALSE(is_black(layer({}, paths, of_depths(2, any_depth)))) << paths;
-    EXPECT_TRUE(is_black(layer({}, direct, of_depths(2, any_depth)))) << direct;
+    EXPECT_FALSE(is_black(layer({}, paths, of_depths(2, all_depths)))) << paths;
+    EXPECT_TRUE(is_black(layer({}, direct, of_depths(2, all_depths)))) << direct;
   }
 }
 
@@ -196,15 +228,15 @@ TEST(Layers, OfATechniqueAreHalfOfWhatItFindsAlone) {
          {std::pair{Technique::light, "light"}, {Technique::bsdf, "direct"}}) {
       const Film both = layer({}, "average", scattered_from(light, technique));
       EXPECT_FALSE(is_black(both)) << light << ", " << alone;
-      EXPECT_EQ(differing_pixels(both, layer({}, alone, {light, {}, 1, any_depth}), 2), 0)
+      EXPECT_EQ(differing_pixels(both, layer({}, alone, only({light, {}, 1, all_depths})), 2), 0)
           << light << ", " << alone;
     }
 }
 
 TEST(Layers, OfTheCameraAndOfLightsThatNoRayMeetsAreOfOneTechnique) {
-  EXPECT_TRUE(is_black(layer({}, "mis", {{}, Technique::light, 0, 0})));
-  EXPECT_FALSE(is_black(layer({}, "mis", {{}, Technique::bsdf, 0, 0})));
-  EXPECT_TRUE(is_black(layer({}, "path_mis", {point, Technique::bsdf})));
+  EXPECT_TRUE(is_black(layer({}, "mis", only({{}, Technique::light, 0, 0}))));
+  EXPECT_FALSE(is_black(layer({}, "mis", only({{}, Technique::bsdf, 0, 0}))));
+  EXPECT_TRUE(is_black(layer({}, "path_mis", only({point, Technique::bsdf}))));
 }
 
 TEST(Layers, LeaveOutWhatTheImageLeavesOut) {
@@ -213,7 +245,7 @@ TEST(Layers, LeaveOutWhatTheImageLeavesOut) {
   parts.strength[sky] = 3e38;
   const LoadedScene loaded = scene_of(parts);
   for (const char* integrator : {"light", "mis", "path_ems"}) {
-    const RenderResult result = render(loaded.scene, settings_of(integrator, by_all()));
+    const RenderResult result = render(loaded.scene, settings_of(integrator, {by_all}));
     EXPECT_GT(result.invalid.count(), 1000);
     expect_sum(result.film, result.layers, integrator);
   }

@@ -315,11 +315,6 @@ TEST(Stratification, IsKeptByResampling) {
 
 // Random numbers are shared by no two consumers.
 
-struct Part {
-  std::string name;
-  LayerRule rule;
-};
-
 /// Of the errors of two films whose pixels all have the same expectation.
 double correlation(const Film& a, const Film& b) {
   const double mean_a = a.mean().g, mean_b = b.mean().g;
@@ -336,23 +331,28 @@ double correlation(const Film& a, const Film& b) {
 
 TEST(RandomNumbers, OfLightSamplesAreIndependentOfEachOtherAndOfBsdfSamples) {
   constexpr int lights = 3, pixels_px = 64;
-  std::vector<Part> parts;
-  for (std::int32_t light = 0; light < lights; ++light)
-    parts.push_back({fmt::format("sample of light {}", light), {light, Technique::light, 1, 1}});
-  parts.push_back({"BSDF sample", {{}, Technique::bsdf, 1, 1}});
-  parts.push_back({"samples at the next vertex", {{}, Technique::light, 2, 2}});
+  constexpr std::int32_t none = LayerSet::none;
+  LayerSet by_light{.light_parts = lights, .light_part = {}, .path_part = {{{none, 0, none}, {none}}}};
+  std::vector<std::string> names;
+  for (std::int32_t light = 0; light < lights; ++light) {
+    by_light.light_part.push_back(light);
+    names.push_back(fmt::format("sample of light {}", light));
+  }
+  const LayerSet others{
+      .path_parts = 2, .light_part = {}, .path_part = {{{none, none, 1, none}, {none, 0, none}}}};
+  names.insert(names.end(), {"BSDF sample", "samples at the next vertex"});
   for (const char* sampler : {"independent", "sobol"}) {
     const LoadedScene loaded = load_scene_text(
         camera_xml({1.5, -2.5, 2}, {0, 0, 0}, narrow_deg, pixels_px, sampler) + several_lights(lights).body);
     RenderSettings settings = settings_of(with_light_sampler(integrator_from_name("path_mis"), "all"));
     settings.samples_per_pixel = samples;
     settings.replicates = 1;
-    for (const Part& part : parts) settings.layers.push_back(part.rule);
+    settings.layers = {by_light, others};
     const std::vector<Film> films = render(loaded.scene, settings).layers;
     for (std::size_t a = 0; a < lights; ++a)
       for (std::size_t b = a + 1; b < films.size(); ++b) {
         EXPECT_NEAR(correlation(films[a], films[b]), 0, 6.0 / pixels_px)
-            << sampler << ": " << parts[a].name << ", " << parts[b].name;
+            << sampler << ": " << names[a] << ", " << names[b];
       }
   }
 }
