@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <stdexcept>
+#include <vector>
 
 namespace etendue {
 namespace {
@@ -20,6 +21,16 @@ TEST(Significance, RejectsBelowTheLevelOfTheFamily) {
   EXPECT_FALSE(is_rejected(0.009, 0.01, 2));
   EXPECT_TRUE(is_rejected(0, 0.01, 1'000'000));
   EXPECT_FALSE(is_rejected(1, 0.01));
+}
+
+TEST(Significance, HolmRaisesTheLeastMost) {
+  const std::vector<double> p{0.03, 0.01, 0.02, std::nan(""), 0.9};
+  const std::vector<double> adjusted = holm_adjusted(p);
+  EXPECT_DOUBLE_EQ(adjusted[1], 0.04);
+  EXPECT_DOUBLE_EQ(adjusted[2], 0.06);
+  EXPECT_DOUBLE_EQ(adjusted[0], 0.06);
+  EXPECT_TRUE(std::isnan(adjusted[3]));
+  EXPECT_DOUBLE_EQ(adjusted[4], 0.9);
 }
 
 TEST(Significance, WhatCouldNotBeTestedHasNotPassed) { EXPECT_TRUE(is_rejected(std::nan(""), 0.01)); }
