@@ -1,9 +1,8 @@
 // --layers and --noise: channels, sums, words.
 //
 // No test of this file can fail by chance: seeds are fixed, and what is compared is equal but for rounding,
-// or far apart. Seen to fail when: films of layers are taken in another order than names; the sky has the
-// lamps' group; emission counts as BSDF samples; positions lack the scene's origin; shares are over the sum
-// of standard errors.
+// or far apart. Seen to fail when: films of layers are taken in another order than names; emission counts as
+// BSDF samples; shares are of standard errors, not of their squares.
 #include "image/image_file.h"
 #include "support/program.h"
 

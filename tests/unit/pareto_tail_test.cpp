@@ -1,6 +1,7 @@
-// The tails of distributions that are known, by the largest of their values. Seeds are fixed: the intervals
-// hold in 95 % of cases, of which 100 are counted; below 80 or above 100 is a chance of 1e-8. Seen to fail
-// when: the slope is 1/k; the threshold is not subtracted; the smallest values are kept.
+// The tails of distributions that are known, by the largest of their values.
+//
+// Seeds are fixed. Intervals hold in 95 % of cases, of which 50 are counted; that fewer than 38 hold has a
+// chance of 1e-5. Seen to fail when: the slope is 1/k; the threshold is not subtracted.
 #include "stats/pareto_tail.h"
 
 #include <algorithm>
@@ -26,25 +27,25 @@ LargestValues largest_of(int count, std::uint32_t seed, const Function& value) {
 TEST(ParetoTail, HasTheSlopeOfTheDensity) {
   for (const double alpha : {1.5, 3.0}) {
     int holding = 0;
-    for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    for (std::uint32_t seed = 0; seed < 50; ++seed) {
       const ParetoTail tail =
           pareto_tail(largest_of(20000, seed, [&](double u) { return std::pow(u, -1 / alpha) - 0.5; }));
       holding += tail.low <= alpha + 1 && alpha + 1 <= tail.high;
       EXPECT_LE(tail.low, tail.slope);
       EXPECT_LE(tail.slope, tail.high);
     }
-    EXPECT_GE(holding, 80) << alpha;
+    EXPECT_GE(holding, 38) << alpha;
   }
 }
 
 TEST(ParetoTail, TellsInfiniteVarianceFromFinite) {
   int infinite = 0, finite = 0;
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
-    infinite += pareto_tail(largest_of(100000, seed, [](double u) {
+    infinite += pareto_tail(largest_of(30000, seed, [](double u) {
                   return std::pow(u, -0.9);
                 })).has_infinite_variance();
     finite +=
-        pareto_tail(largest_of(100000, seed, [](double u) { return -std::log(u); })).has_infinite_variance();
+        pareto_tail(largest_of(30000, seed, [](double u) { return -std::log(u); })).has_infinite_variance();
   }
   EXPECT_EQ(infinite, 20);
   EXPECT_EQ(finite, 0);

@@ -1,6 +1,7 @@
 // Covariances of parts with the whole, against sums over all replicates.
-// Seen to fail when: a part's mean is that before the replicate and the whole's too; passes each have a mean
-// of their own.
+//
+// Seen to fail when: deviations from means before and after a replicate are mixed up; each pass has means of
+// its own.
 #include "film/part_covariances.h"
 
 #include <array>
