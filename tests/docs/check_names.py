@@ -16,9 +16,9 @@ import sys
 
 PAGES = ("README.md", "CONTRIBUTING.md", "docs/*.md", "report/template.html.j2", "report/answers.py",
          "report/tables.py")
-CODE = ("src", "apps", "tests", "bench", "cmake", "report", "scripts", "scenes")
+CODE = ("src", "include", "apps", "tests", "bench", "cmake", "report", "scripts", "scenes")
 CODE_FILES = (".h", ".cpp", ".py", ".sh", ".js", ".cmake", ".txt", ".xml", ".in", ".css", ".json", ".j2")
-PATH = re.compile(r"(?:src|apps|tests|bench|cmake|report|scripts|scenes|docs)/[\w./*-]*")
+PATH = re.compile(r"(?:src|include|apps|tests|bench|cmake|report|scripts|scenes|docs)/[\w./*-]*")
 FILE = re.compile(r"[\w-]+\.(?:h|cpp|py)")
 NAME = re.compile(r"~?[A-Za-z_]\w*(?:::~?[A-Za-z_]\w*)*(?:<F>)?(?:\(\))?")
 QUOTED = re.compile(r"`([^`\n]+)`|<code>([^<]+)</code>")

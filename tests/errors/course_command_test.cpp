@@ -66,8 +66,9 @@ TEST_F(CourseCommand, WatchRendersWhatIsSaved) {
   write("scene.xml",
         "<scene><camera type=\"perspective\"><integer name=\"width\" value=\"8\"/><integer name=\"height\" "
         "value=\"8\"/></camera><shape type=\"sphere\"/></scene>");
-  const Program watch({"course", "watch", "mine", "--port", "0", "--scene", "scene.xml", "--spp", "1"},
-                      folder());
+  const Program watch(
+      {"course", "watch", "mine", "--port", "0", "--scene", "scene.xml", "--spp", "1", "--seconds", "100"},
+      folder());
   const auto says = [&](const char* text) {
     return [&watch, text] { return watch.err_so_far().find(text) != std::string::npos; };
   };
