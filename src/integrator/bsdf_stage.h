@@ -5,6 +5,7 @@
 #include "integrator/block_receiver.h"
 #include "integrator/camera_stage.h"
 #include "integrator/contribution.h"
+#include "integrator/path_rules.h"
 #include "integrator/vertex.h"
 
 #include <limits>

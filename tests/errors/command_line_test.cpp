@@ -309,7 +309,7 @@ TEST_F(CommandLine, InfoListsEveryPluginWithItsParameters) {
     }
   for (const char* name : {"light", "technique", "depth", "position", "distance", "normal", "albedo", "id",
                            "samples", "variance_share"})
-    EXPECT_TRUE(std::any_of(info.at("layers").begin(), info.at("layers").end(), [&](const auto& layer) {
+    EXPECT_TRUE(std::any_of(info.at("layers").begin(), info.at("layers").end(), [&](const nlohmann::json& layer) {
       return layer.at("name") == name && !layer.at("meaning").get<std::string>().empty();
     })) << name;
   const ProgramResult text = run({"info"});
