@@ -8,6 +8,9 @@ void add_course_command(CLI::App& app, int& exit_code) {
   add_course_new_command(*course, exit_code);
   add_course_build_command(*course, exit_code);
   add_course_watch_command(*course, exit_code);
+  add_course_check_command(*course, exit_code);
+  add_course_probe_command(*course, exit_code);
+  add_course_grade_command(*course, exit_code);
   add_course_pack_command(*course, exit_code);
 }
 

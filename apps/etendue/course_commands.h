@@ -8,6 +8,9 @@ namespace etendue::app {
 void add_course_new_command(CLI::App& course, int& exit_code);
 void add_course_build_command(CLI::App& course, int& exit_code);
 void add_course_watch_command(CLI::App& course, int& exit_code);
+void add_course_check_command(CLI::App& course, int& exit_code);
+void add_course_probe_command(CLI::App& course, int& exit_code);
+void add_course_grade_command(CLI::App& course, int& exit_code);
 void add_course_pack_command(CLI::App& course, int& exit_code);
 
 }  // namespace etendue::app

@@ -56,6 +56,7 @@ struct BsdfAsked {
   Vec3f wo_local, wi_local;  ///< To the viewer and to the light: BSDFQueryRecord::wi and ::wo.
   Colorf value;              ///< f (1/sr); of a sample its weight.
   float pdf;                 ///< 1/sr
+  Vec2f u;                   ///< Of a sample: as it was given.
 };
 
 using Call = std::variant<NumbersDrawn, RayCast, PointSampled, DensityAsked, EmissionAsked, BsdfAsked>;

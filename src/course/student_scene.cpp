@@ -32,7 +32,7 @@ class StudentBsdf final : public nori::BSDF {
     if (bRec.measure != nori::EDiscrete)
       with_model(bRec.uv,
                  [&](const auto& bsdf) { value = bsdf.eval(from_student(bRec.wi), from_student(bRec.wo)); });
-    note(BsdfAsked::What::value, bRec, value, 0);
+    note(BsdfAsked::What::value, bRec, value, 0, {0, 0});
     return to_student(value);
   }
   float pdf(const nori::BSDFQueryRecord& bRec) const override {
@@ -41,7 +41,7 @@ class StudentBsdf final : public nori::BSDF {
       with_model(bRec.uv, [&](const auto& bsdf) {
         density = bsdf.pdf_solid_angle(from_student(bRec.wi), from_student(bRec.wo));
       });
-    note(BsdfAsked::What::density, bRec, {0, 0, 0}, density);
+    note(BsdfAsked::What::density, bRec, {0, 0, 0}, density, {0, 0});
     return density;
   }
   nori::Color3f sample(nori::BSDFQueryRecord& bRec, const nori::Point2f& sample) const override {
@@ -51,7 +51,7 @@ class StudentBsdf final : public nori::BSDF {
     bRec.wo = to_student(drawn.wi_local);
     bRec.eta = drawn.eta;
     bRec.measure = std::isinf(drawn.pdf_solid_angle) ? nori::EDiscrete : nori::ESolidAngle;
-    note(BsdfAsked::What::sample, bRec, drawn.weight, drawn.pdf_solid_angle);
+    note(BsdfAsked::What::sample, bRec, drawn.weight, drawn.pdf_solid_angle, from_student(sample));
     return to_student(drawn.weight);
   }
   bool isDiffuse() const override {
@@ -63,10 +63,11 @@ class StudentBsdf final : public nori::BSDF {
   void with_model(const nori::Point2f& uv, Function&& f) const {
     std::visit([&](const auto& model) { f(model.at(from_student(uv), true)); }, *material_);
   }
-  void note(BsdfAsked::What what, const nori::BSDFQueryRecord& bRec, const Colorf& value,
-            float density) const {
+  void note(BsdfAsked::What what, const nori::BSDFQueryRecord& bRec, const Colorf& value, float density,
+            const Vec2f& u) const {
     if (CallRecording::is_on())
-      CallRecording::note(BsdfAsked{what, id_, from_student(bRec.wi), from_student(bRec.wo), value, density});
+      CallRecording::note(
+          BsdfAsked{what, id_, from_student(bRec.wi), from_student(bRec.wo), value, density, u});
   }
 
   const Material* material_;
@@ -118,6 +119,7 @@ class StudentMesh final : public nori::Mesh {
     CallRecording::note(DensityAsked{id_, surface().pdf_area()});
     return surface().pdf_area();
   }
+  int getTriangleCount() const override { return geometry_->triangles[std::size_t(id_)]; }
   const nori::Luminaire* getLuminaire() const override { return luminaire_; }
   const nori::BSDF* getBSDF() const override { return bsdf_; }
   const std::string& getName() const override { return name_; }

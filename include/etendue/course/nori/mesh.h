@@ -15,6 +15,8 @@ class NORI_SHARED Mesh : public NoriObject {
   virtual void samplePosition(const Point2f& sample, Point3f& p, Normal3f& n) const = 0;
   /// The density of samplePosition per area (1/m^2): one over the area of the whole surface.
   virtual float pdf() const = 0;
+  /// Of which the surface is made; 0 where it is a sphere or a disk.
+  virtual int getTriangleCount() const = 0;
 
   /// Whether it is a light.
   bool isLuminaire() const { return getLuminaire() != nullptr; }

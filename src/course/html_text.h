@@ -1,0 +1,19 @@
+// Pieces of HTML pages: text that stays text, files as a part of the page.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace etendue {
+
+/// With what HTML reads as markup written out.
+std::string html_text(std::string_view text);
+
+/// A PNG as the src of an img; empty where there is none.
+std::string png_in_page(const std::filesystem::path& file);
+
+/// Head, style and <body> of a page.
+std::string html_head(std::string_view title);
+
+}  // namespace etendue
