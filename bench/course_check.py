@@ -62,7 +62,7 @@ def planted(options, mistakes):
     for i, mistake in enumerate(mistakes):
         result = checked(options, edited(mistake["edits"]), options.seed + i, options.probe_seed + i)
         found = classes(result)
-        caught += result["outcome"] != "right"
+        caught += result["outcome"] == "wrong"
         first += found[:1] == [mistake["class"]]
         two += mistake["class"] in found[:2]
         print(f"{mistake['class']:2} {mistake['name']:34} {told(result)}", flush=True)
@@ -81,7 +81,7 @@ def pairs(options, mistakes):
         result = checked(options, source, options.seed + done, options.probe_seed + done)
         found = classes(result)
         is_named = [one["class"] in found for one in (a, b)]
-        caught += result["outcome"] != "right"
+        caught += result["outcome"] == "wrong"
         named += any(is_named)
         both += all(is_named)
         print(f"{a['class']:2} + {b['class']:2} {'' if any(is_named) else 'NOT NAMED '}{told(result)}", flush=True)

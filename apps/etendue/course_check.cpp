@@ -83,7 +83,7 @@ void add_course_check_command(CLI::App& course, int& exit_code) {
   command->add_option("--probe-seed", options->settings.probe_seed,
                       "Of the geometry of the small scenes that it is looked at with [1]");
   command->add_flag("--no-scenes", options->has_no_scenes, "Leave the two scenes of the exercise out");
-  command->add_option("--seconds", options->settings.seconds, "The code is ended after so many [120]")
+  command->add_option("--seconds", options->settings.seconds, "The code is ended after so many [300]")
       ->check(CLI::PositiveNumber);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

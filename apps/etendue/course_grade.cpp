@@ -71,7 +71,7 @@ void add_course_grade_command(CLI::App& course, int& exit_code) {
   command->add_option("--rubric", options->rubric_file, "JSON file with points [those of the handout]");
   command->add_option("-o,--out", options->out, "Folder for the table and the reports [grades]");
   command->add_option("--seed", options->settings.seed, "Of the samples [1]");
-  command->add_option("--seconds", options->settings.seconds, "Each hand-in is ended after so many [120]")
+  command->add_option("--seconds", options->settings.seconds, "Each hand-in is ended after so many [300]")
       ->check(CLI::PositiveNumber);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -163,6 +163,14 @@ class Diagnosing {
     return fits_.wrong > 0 ? std::max(0.0, 1 - double(fit.misses) / double(fits_.wrong)) : 0;
   }
 
+  /// Of the best fit of this class by itself: of two mistakes, that which shows in more samples comes first.
+  std::int64_t misses_alone(const TermMistake& mistake) const {
+    for (const TermFit& fit : fits_.best)
+      if (fit.is_of_one_class() && !fit.mistakes.empty() && fit.mistakes[0]->mistake == mistake.mistake)
+        return fit.misses;
+    return fits_.wrong;
+  }
+
   bool is_all_black() const {
     return std::ranges::all_of(evidence_.samples, [](const SampleEvidence& sample) {
       return sample.value == Colorf{0, 0, 0};
@@ -198,14 +206,17 @@ class Diagnosing {
       return;
     }
     result_.fit = best;
-    for (const TermMistake* one : best.mistakes) {
+    std::ranges::stable_sort(result_.fit.mistakes, {},
+                             [&](const TermMistake* one) { return misses_alone(*one); });
+    for (const TermMistake* one : result_.fit.mistakes) {
       std::string evidence =
           fmt::format("{} of {} wrong samples come out so, to the bit but for rounding; {}",
                       percent(result_.share_explained), fits_.wrong, ratios(evidence_));
       if (one->mistake == visibility) evidence += text_of_shadow_rays(evidence_);
       add(one->mistake, std::string(one->how), evidence);
     }
-    if (best.factor != 1) {
+    // Where the BSDF is sampled too, the factor may be what one of two techniques counts for.
+    if (best.factor != 1 && evidence_.bsdf_samples == 0) {
       const bool is_sign = std::abs(best.factor + 1) < 3e-3;
       add(is_sign ? light_cosine_sign : constant_factor, text_of_factor(best.factor),
           fmt::format("{} of {} wrong samples come out so; {}", percent(result_.share_explained), fits_.wrong,

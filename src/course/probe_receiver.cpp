@@ -53,7 +53,8 @@ Colorf ProbeReceiver::emitted() const {
   return is_front ? from_student(hit_.mesh->getLuminaire()->getColor()) : Colorf{0, 0, 0};
 }
 
-LightPointFacts ProbeReceiver::facts(std::int32_t mesh, const Vec3f& position, const Vec3f& ng) const {
+LightPointFacts ProbeReceiver::unshadowed_facts(std::int32_t mesh, const Vec3f& position,
+                                                const Vec3f& ng) const {
   LightPointFacts f;
   const Geometry& geometry = probe_.loaded.scene.geometry;
   f.light = probe_.light_of_mesh[std::size_t(mesh)];
@@ -89,13 +90,21 @@ LightPointFacts ProbeReceiver::facts(std::int32_t mesh, const Vec3f& position, c
     if (probe_.scene.rayIntersect({to_student(position + ng * off), to_student(-ng), 0, 2 * off}, at))
       f.cos_light_shading = -dot(f.direction, widen(from_student(at.shFrame.n)));
   }
-  if (probe_.probe.has_blockers) {
-    nori::Intersection between;
-    const float end = float(f.distance) * (1 - 1e-4f);
-    f.is_visible = !probe_.scene.rayIntersect({hit_.p, to_light, nori::Epsilon, end}, between);
-    f.is_hidden_by_light_only = !f.is_visible && between.mesh->isLuminaire();
-  }
+  return f;
+}
+
+void ProbeReceiver::find_visibility(LightPointFacts& f) const {
+  nori::Intersection between;
+  const float end = float(f.distance) * (1 - 1e-4f);
+  f.is_visible =
+      !probe_.scene.rayIntersect({hit_.p, to_student(narrow(f.direction)), nori::Epsilon, end}, between);
+  f.is_hidden_by_light_only = !f.is_visible && between.mesh->isLuminaire();
   f.is_visible_to_student = f.is_visible;
+}
+
+LightPointFacts ProbeReceiver::facts(std::int32_t mesh, const Vec3f& position, const Vec3f& ng) const {
+  LightPointFacts f = unshadowed_facts(mesh, position, ng);
+  if (f.light >= 0) find_visibility(f);
   return f;
 }
 
@@ -117,7 +126,8 @@ Color<double> ProbeReceiver::expected() const {
           for (const double third : {1.0 / 3, 2.0 / 3}) {
             if (third > 0.5 && i + j + 1 >= cells) continue;
             const Vec3<double> at = c[0] + u * (i + third) + v * (j + third);
-            LightPointFacts f = facts(mesh, narrow(at), ng);
+            LightPointFacts f = unshadowed_facts(mesh, narrow(at), ng);
+            if (probe_.probe.has_blockers) find_visibility(f);
             f.area = cell_area;
             const Colorf value = right_terms(f).value();
             sum = sum + Color<double>{value.r, value.g, value.b};

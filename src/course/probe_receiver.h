@@ -42,6 +42,10 @@ class ProbeReceiver {
   Color<double> expected() const;
 
  private:
+  /// But for visibility.
+  LightPointFacts unshadowed_facts(std::int32_t mesh, const Vec3f& position, const Vec3f& ng) const;
+  void find_visibility(LightPointFacts& facts) const;
+
   const LoadedProbe& probe_;
   Vec3f to_camera_;
   bool is_surface_;
