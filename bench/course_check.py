@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """How well `etendue course check` tells what is wrong: prints a line a hand-in and the counts of docs/course.md.
 
-usage: course_check.py ETENDUE planted|pairs|variants|seeds|FILE.json [--probe-seed N] [--count N] [--seed N]
+usage: course_check.py ETENDUE planted|pairs|variants|unlisted|seeds [--probe-seed N] [--count N] [--seed N]
 
 planted   each mistake of tests/course/mistakes.json alone
 pairs     random pairs of them
 variants  right integrators written in other ways, tests/course/variants.json
 seeds     the right one with --count other seeds and probes: how often it fails
-FILE      hand-ins of a file made like variants.json: what is wrong in ways that are not listed
+unlisted  wrong in ways that the check does not know, tests/course/unlisted.json
 """
 
 import argparse
@@ -37,7 +37,7 @@ def checked(options, source, seed, probe_seed):
         (folder / "light_integrator.cpp").write_text(source)
         found = folder / "found.json"
         done = subprocess.run([options.etendue, "course", "check", name, "--no-scenes", "--json", found, "--seed", str(seed),
-                               "--probe-seed", str(probe_seed)], capture_output=True, text=True)
+                               "--probe-seed", str(probe_seed), "--seconds", "1200"], capture_output=True, text=True)
         if not found.exists():
             raise SystemExit(done.stdout + done.stderr)
         return json.loads(found.read_text())
@@ -115,7 +115,7 @@ def seeds(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("etendue")
-    parser.add_argument("what")
+    parser.add_argument("what", choices=["planted", "pairs", "variants", "unlisted", "seeds"])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--probe-seed", type=int, default=1001)
     parser.add_argument("--count", type=int, default=40)
@@ -125,12 +125,10 @@ def main():
         planted(options, mistakes)
     elif options.what == "pairs":
         pairs(options, mistakes)
-    elif options.what == "variants":
-        listed(options, json.loads((FOLDER / "variants.json").read_text()))
     elif options.what == "seeds":
         seeds(options)
     else:
-        listed(options, json.loads(pathlib.Path(options.what).read_text()))
+        listed(options, json.loads((FOLDER / f"{options.what}.json").read_text()))
 
 
 if __name__ == "__main__":

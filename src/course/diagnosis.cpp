@@ -178,7 +178,7 @@ class Diagnosing {
   }
 
   void find_in_terms() {
-    constexpr double tiny = 2e-3, enough = 0.9;
+    constexpr double tiny = 2e-3, enough = 0.9, most = 0.75;
     const bool is_black = is_all_black();
     if (double(fits_.wrong) <= tiny * double(fits_.samples) && fits_.samples > 0) return;
     if (fits_.best.empty() || fits_.samples == 0) {
@@ -199,7 +199,7 @@ class Diagnosing {
         add(nothing_returned, "", "every sample is 0");
       else
         result_.is_unknown = true;
-      return;
+      if (is_black || result_.share_explained < most) return;
     }
     if (is_black && !explains_black(best)) {
       add(nothing_returned, "", "every sample is 0");
@@ -232,9 +232,30 @@ class Diagnosing {
   }
 
   void find_in_choices() {
+    constexpr double level = 1e-8;
+    const double p_several = p_value_of_points(false), p_alone = p_value_of_points(true);
+    const bool are_uniform = p_several > level && p_alone > level;
+    // A number that has chosen between light and BSDF leaves out lights as well.
+    if (!are_uniform && evidence_.bsdf_samples > 0) {
+      add(sample_shared_with_bsdf, "",
+          "the numbers that place points on lights are not uniform, and the BSDF is sampled too");
+      return;
+    }
+    if (const std::string never = lights_never_chosen(); !never.empty())
+      add(light_never_chosen, "", "in none of the probes' samples: " + never);
+    if (are_uniform) return;
+    if (p_alone > level)
+      add(number_used_twice, "",
+          fmt::format("with several lights the numbers that place points are not uniform (p = {:.1e}); with "
+                      "one they are",
+                      p_several));
+    else
+      result_.is_unknown = true;
+  }
+
+  std::string lights_never_chosen() const {
     std::string never;
-    for (std::size_t probe = 0; probe < evidence_.points.size(); ++probe) {
-      const std::vector<PointsOfLight>& lights = evidence_.points[probe];
+    for (const std::vector<PointsOfLight>& lights : evidence_.points) {
       double drawn = 0;
       for (const PointsOfLight& points : lights) drawn += points.drawn;
       if (drawn < 40 * double(lights.size())) continue;
@@ -242,28 +263,10 @@ class Diagnosing {
         if (lights[light].drawn == 0)
           never += fmt::format("{}light {} of {}", never.empty() ? "" : ", ", light + 1, lights.size());
     }
-    if (!never.empty()) add(light_never_chosen, "", "in none of the probes' samples: " + never);
-    find_nonuniform_points();
+    return never;
   }
 
-  /// Where a light is not alone and its points are not uniform, the choice of it has used up the number.
-  void find_nonuniform_points() {
-    constexpr double level = 1e-8;
-    const double p_several = p_value_of_points(false), p_alone = p_value_of_points(true);
-    if (p_several > level && p_alone > level) return;
-    if (evidence_.bsdf_samples > 0)
-      add(sample_shared_with_bsdf, "",
-          "the numbers that place points on lights are not uniform, and the BSDF is sampled too");
-    else if (p_alone > level)
-      add(number_used_twice, "",
-          fmt::format(
-              "with several lights the numbers that place points are not uniform (p = {:.1e}); with one "
-              "they are",
-              p_several));
-    else
-      result_.is_unknown = true;
-  }
-
+  /// Of uniform points, in the probes with one light or in those with several.
   double p_value_of_points(bool is_alone) const {
     std::vector<double> observed, expected;
     for (const std::vector<PointsOfLight>& lights : evidence_.points)

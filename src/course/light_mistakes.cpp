@@ -159,14 +159,14 @@ const std::vector<TermMistake>& term_mistakes() {
          t.bsdf = f.bsdf_of_world;
          t.cos_receiver = f.direction.z;
        }},
-      {cosine_twice, "cos theta' twice", [](T& t, const F& f) { t.cos_receiver *= f.cos_receiver; }},
-      {cosine_twice, "cos theta'' twice", [](T& t, const F& f) { t.cos_light *= f.cos_light; }},
+      {cosine_twice, "cos theta' twice", [](T& t, const F&) { t.cos_receiver *= t.cos_receiver; }},
+      {cosine_twice, "cos theta'' twice", [](T& t, const F&) { t.cos_light *= t.cos_light; }},
       {density_of_one_triangle, "that of the first triangle",
        [](T& t, const F& f) { t.area = f.first_triangle_area; }},
       {density_of_one_triangle, "multiplied by the number of triangles",
-       [](T& t, const F& f) { t.area = f.area / f.triangle_count; }},
+       [](T& t, const F& f) { t.area /= f.triangle_count; }},
       {density_of_one_triangle, "divided by the number of triangles",
-       [](T& t, const F& f) { t.area = f.area * f.triangle_count; }},
+       [](T& t, const F& f) { t.area *= f.triangle_count; }},
       {measure_mixed_up, "a solid-angle density where one per area belongs: cos theta''/d^2 twice",
        [](T& t, const F& f) { t.factor *= clamped(f.cos_light) / (f.distance * f.distance); }},
       {measure_mixed_up, "cos theta''/d^2 is divided out",

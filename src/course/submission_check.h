@@ -14,7 +14,7 @@ struct SubmissionCheckSettings {
   std::filesystem::path work;     ///< A folder for the module and for what the check leaves; is made.
   std::uint64_t seed = 1, probe_seed = 1;
   bool has_scenes = true;  ///< Looks at the exercise's two scenes too.
-  double seconds = 120;    ///< That the student's code has.
+  double seconds = 300;    ///< That the student's code has.
 };
 
 /// What to_json of an IntegratorCheck says, and: `outcome` ("right", "wrong", "does not compile",
