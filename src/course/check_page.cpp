@@ -63,7 +63,7 @@ std::string diagnosis_of(const json& result) {
 
 /// What single samples are, over what they should be: a column a probe, a decade a step.
 std::string plot_of(const json& result) {
-  constexpr double width = 720, height = 300, left = 50, top = 12, bottom = 78, decades = 2;
+  constexpr double width = 720, height = 330, left = 50, top = 12, bottom = 110, decades = 2;
   const json& probes = result["probes"];
   const double column = (width - left) / double(std::max<std::size_t>(probes.size(), 1));
   const double low = height - bottom, half = (low - top) / 2, zero = low + 14;
@@ -102,7 +102,8 @@ std::string plot_of(const json& result) {
                        colors[std::size_t(std::max(light, 0)) % 4]);
   }
   return fmt::format(
-      "<h2>Single samples</h2>\n<figure>{}</svg><figcaption>Each dot is one sample of a probe: what came "
+      "<h2>Single samples</h2>\n<figure><div class=\"scroll\">{}</svg></div><figcaption>Each dot is one "
+      "sample of a probe: what came "
       "over what "
       "is right for the very same point on the light; a colour a light. All are on the green line where the "
       "code is right. At the upper edge: light where there should be none.</figcaption></figure>\n",

@@ -21,7 +21,7 @@ constexpr std::string_view style = R"(
   pre { white-space: pre-wrap; overflow-wrap: anywhere; background: #f3f3f3; padding: .8em; font-size: .85em; }
   figure { margin: 1em 0; } .three { display: grid; grid-template-columns: repeat(auto-fit, minmax(220px, 1fr)); gap: .8em; }
   .three figure { margin: 0; } img { width: 100%; image-rendering: pixelated; display: block; background: #000; }
-  figcaption { color: #666; font-size: .9em; } svg { width: 100%; height: auto; display: block; }
+  figcaption { color: #666; font-size: .9em; } svg { width: 100%; min-width: 600px; height: auto; display: block; }
 )";
 
 }  // namespace

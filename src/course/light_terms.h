@@ -10,7 +10,7 @@ namespace etendue {
 struct LightPointFacts {
   int light = 0;  ///< In the order of Scene::getLuminaires.
   Colorf radiance{0, 0, 0};
-  double choice_probability = 1;  ///< With which the student's code chooses this light.
+  double choice_probability = 1;  ///< Of this light; alike for all, unless the choices say otherwise.
   double points_per_sample = 1;   ///< How many points it takes a sample.
   double area = 1, first_triangle_area = 1, triangle_count = 1;  ///< Areas in m^2.
   double distance = 1;                                           ///< m

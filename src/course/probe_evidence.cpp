@@ -136,7 +136,10 @@ class Gathering {
     evidence_.bsdf_samples += !bsdf_numbers.empty();
     evidence_.numbers_shared_with_bsdf += is_shared;
     evidence_.without_numbers += !has_numbers && !noted.points.empty();
-    for (LightPointFacts& point : noted.points) point.points_per_sample = double(noted.points.size());
+    for (LightPointFacts& point : noted.points) {
+      point.choice_probability = 1 / double(loaded.light_areas.size());
+      point.points_per_sample = double(noted.points.size());
+    }
     evidence_.samples.push_back(std::move(noted));
   }
 
