@@ -15,7 +15,7 @@
 namespace etendue {
 
 struct CheckSettings {
-  std::string integrator;        ///< By name; empty: the module's only one.
+  std::string integrator{};      ///< By name; empty: the module's only one.
   std::uint64_t seed = 1;        ///< Of the samples.
   std::uint64_t probe_seed = 1;  ///< Of the probes' geometry.
   std::filesystem::path folder;  ///< For files of the check; exists and may be written to.

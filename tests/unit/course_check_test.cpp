@@ -1,8 +1,6 @@
 // The check of a light integrator: the right one passes, planted mistakes are named, points follow.
 //
-// False-alarm rate of the right one: 5e-4 by the check's own level, with fixed seeds. Seen to fail when: the
-// fitted terms leave 1/pmf in all mistakes; the expected value leaves out a light; shares are taken of the
-// mean that came.
+// False-alarm rate of the right one: 5e-4 by the check's own level, with fixed seeds.
 #include "base/error.h"
 #include "course/check.h"
 #include "course/rubric.h"
