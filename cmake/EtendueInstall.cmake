@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 set(modules etendue_plane_polygon)
-foreach(level scalar v2 v3 v4)
+foreach(level IN LISTS ETENDUE_ISAS)
   list(APPEND modules etendue_kernel_${level})
 endforeach()
 set_target_properties(etendue PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
