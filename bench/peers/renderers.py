@@ -53,7 +53,8 @@ class Etendue:
         if process.returncode != 0:
             raise RuntimeError(f"{' '.join(command)}:\n{said}")
         told = json.loads(stats.read_text())
-        seconds = told["seconds_render"] + told.get("adaptive", {}).get("pilot_seconds", 0)
+        pilots = [told[pilot]["pilot_seconds"] for pilot in ("light_budget", "adaptive") if pilot in told]
+        seconds = told["seconds_render"] + sum(pilots)
         if len(self.cores) == 1:  # Without the time for which other programs had the core.
             seconds *= min(1.0, (usage.ru_utime + usage.ru_stime) / wall)
         return Run(read_exr(image), seconds)
