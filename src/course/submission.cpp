@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <fstream>
-#include <regex>
+#include <sstream>
 #include <unistd.h>
 
 namespace etendue {
@@ -52,11 +52,16 @@ Submission submission_in(const fs::path& folder) {
 }
 
 std::optional<int> group_number(const fs::path& source) {
-  static const std::regex stated(R"(^\s*#\s*define\s+GROUP_NUMBER\s+(\d{1,8})\b)");
   std::ifstream file(source);
-  std::smatch match;
-  for (std::string line; std::getline(file, line);)
-    if (std::regex_search(line, match, stated)) return std::stoi(match[1]);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    char hash = 0;
+    std::string directive, name;
+    int number = -1;
+    if (words >> hash >> directive >> name >> number && hash == '#' && directive == "define" &&
+        name == "GROUP_NUMBER" && number >= 0)
+      return number;
+  }
   return std::nullopt;
 }
 
