@@ -57,6 +57,10 @@ RenderSettings settings_of(const VerifySettings& asked, const Estimator& estimat
   settings.seed = hash64(hash64(asked.seed) + number);
   settings.threads = asked.threads;
   settings.isa = asked.isa;
+  if (!asked.against) {
+    settings.layers.push_back(scattered_light());
+    settings.keeps_luminances_of_layer = true;
+  }
   return settings;
 }
 

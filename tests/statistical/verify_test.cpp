@@ -128,7 +128,7 @@ TEST_P(PlantedBugs, AreFound) {
 
 INSTANTIATE_TEST_SUITE_P(Verify, PlantedBugs,
                          testing::Values("none", "no_light_pmf", "cosine_twice", "light_never_chosen",
-                                         "mis_density_of_one_side"),
+                                         "mis_met_side_in_full"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace
