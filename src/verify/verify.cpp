@@ -156,9 +156,11 @@ void share_steps(std::vector<VerifiedEstimator>& estimators) {
   for (const VerifiedEstimator& each : estimators)
     if (each.estimator.integrator.path_rules()->light_samples())
       step = std::max(step, each.image.whole.step() * each.samples_per_pixel);
-  for (VerifiedEstimator& each : estimators)
-    if (!each.estimator.integrator.path_rules()->needs_both_pdfs())
-      set_unseen_step(each.image, std::max(each.image.unseen_step, step / each.samples_per_pixel));
+  for (VerifiedEstimator& each : estimators) {
+    const PathRules& rules = *each.estimator.integrator.path_rules();
+    if (rules.light_samples() && !rules.needs_both_pdfs())
+      set_unseen_step(each.image, step / each.samples_per_pixel);
+  }
 }
 
 std::vector<VerifiedPair> compare_all(const std::vector<VerifiedEstimator>& estimators, double level) {
