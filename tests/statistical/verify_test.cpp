@@ -1,8 +1,7 @@
 // Estimators of a right scene agree; of a kernel with a planted bug they do not.
 //
 // False-alarm rate of this file: 5e-5 (some 45 runs at a level of 1e-6; docs/verify.md has how often alarms
-// come at 1e-3), fixed seeds. Seen to fail when: steps of what has not been seen are 0
-// (ThatMeetsLightSeldomIsNotAccused); the planted kernel has no bug (all of PlantedBugs).
+// come at 1e-3), fixed seeds. Seen to fail when a bug is too small to be found (PlantedBugs).
 #include "verify/verify.h"
 
 #include "image/image_file.h"
