@@ -132,6 +132,12 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->add_option("-o,--output", options->map_file,
                    "EXR of the pair that differs most: where, in standard errors, with sign")
       ->allow_extra_args(false);
+  CLI::Option* against =
+      command->add_option("--against", options->against, "Another renderer's image of the scene, same size")
+          ->allow_extra_args(false);
+  command->add_option("--against-stderr", options->against_stderr, "Image of its standard errors")
+      ->allow_extra_args(false)
+      ->needs(against);
   command->add_option("--json", options->json_file, "JSON file with all pairs")->allow_extra_args(false);
   add_run_options(*command, options->run);
   command->add_flag("--quiet", options->is_quiet, "No progress and no warnings about the file");

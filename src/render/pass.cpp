@@ -139,12 +139,13 @@ struct Passes::Threads {
     kernel.render_tile(job);
     if (job.is_stopped) return false;
     const Color<double>* means = worker.means.data();
+    const FilmStack& of_luminances = films[settings.keeps_luminances_of_layer ? 1 : 0];
     for (FilmStack& film : films)
       for (int y = tile.pixels.y_begin; y < tile.pixels.y_end; ++y)
         for (int x = tile.pixels.x_begin; x < tile.pixels.x_end; ++x, means += tile.replicates) {
           const std::span<const Color<double>> of_pixel(means, std::size_t(tile.replicates));
           film.add(x, y, of_pixel);
-          if (luminances && &film == &films.front()) luminances->add(x, y, tile.first_replicate, of_pixel);
+          if (luminances && &film == &of_luminances) luminances->add(x, y, tile.first_replicate, of_pixel);
         }
     if (noise_parts > 0) add_to_noise(tile, worker.means, covariances);
     worker.counts.samples += tile.samples();

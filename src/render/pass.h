@@ -37,7 +37,7 @@ class Passes {
   /// Where a stop ends the first pass of a film early, the tiles that are whole are committed; of later
   /// passes nothing is. A stop soon lets a pass that starts with fewer than two replicates come to its end,
   /// if that is no more than about 10 s after it.
-  /// \param luminances get those of the image too, where set
+  /// \param luminances get those of the image too, or of its first layer, where set
   PassResult render(std::vector<FilmStack>& films, int end, ReplicateLuminances* luminances = nullptr);
 
   /// All that is committed of a stack.

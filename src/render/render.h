@@ -36,6 +36,8 @@ struct RenderSettings {
   bool is_reordering = true;            ///< Aim shadow packets; off only to show that it changes nothing.
   std::vector<LayerSet> layers;         ///< Parts of the image to be kept apart; each costs time and memory.
   std::optional<LayerSet> noise_parts;  ///< Parts of which only the noise is to be known.
+  /// Keep the luminances of the first layer's replicates, not of the image's.
+  bool keeps_luminances_of_layer = false;
 
   int replicate_count() const { return replicates.value_or(default_replicates(samples_per_pixel)); }
   int samples_per_replicate() const { return samples_per_pixel / replicate_count(); }
@@ -66,7 +68,8 @@ struct RenderResult {
   std::vector<Film> layers{};      ///< Of one set after the other, of the same pixels and replicates.
   std::vector<PartNoise> noise{};  ///< Of each of the settings' noise_parts.
   int replicates = 0;
-  ReplicateLuminances luminances{};  ///< Of the image, whose first `replicates` count.
+  /// Of the image, or of its first layer, as the settings say; the first `replicates` count.
+  ReplicateLuminances luminances{};
   RenderCounts counts{};
   InvalidSamples invalid{};
   double seconds = 0;

@@ -95,6 +95,11 @@ ComparedImage compared_image(MomentImage image, std::span<const std::int32_t> ma
   return compared;
 }
 
+void set_unseen_step(ComparedImage& image, double step) {
+  image.unseen_step = step;
+  image.block_steps = steps_around(image);
+}
+
 Comparison compare(const ComparedImage& a, const ComparedImage& b, double level) {
   Tests tests(a, b, level);
   Comparison comparison;

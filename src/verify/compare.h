@@ -12,8 +12,8 @@ namespace etendue {
 /// What an image is compared by.
 struct ComparedImage {
   MomentImage image;
-  /// What one more sample that finds light may add to a pixel at most, of samples that seldom do: those that
-  /// meet lights by chance. 0 of others, whose own samples tell.
+  /// What one more sample that finds light may add to a pixel, of samples that seldom do. 0 of others, whose
+  /// own samples tell.
   double unseen_step = 0;
   MeanMoments whole{};                   ///< Sum over all pixels.
   std::vector<MeanMoments> materials{};  ///< Sums over the pixels that show each.
@@ -24,6 +24,8 @@ struct ComparedImage {
 /// \param material_of_pixel that is seen through its middle, -1 where none is \param materials how many
 ComparedImage compared_image(MomentImage image, std::span<const std::int32_t> material_of_pixel,
                              int materials, double unseen_step = 0);
+
+void set_unseen_step(ComparedImage& image, double step);
 
 /// Parts of the film that are tested.
 struct Region {

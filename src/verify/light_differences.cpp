@@ -1,6 +1,6 @@
 #include "verify/light_differences.h"
 
-#include "stats/mean_moments.h"
+#include "verify/moment_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,15 +45,17 @@ MeanMoments sum_of(const Film& film) {
 std::vector<LightDifference> light_differences(const Scene& scene, RenderSettings a, RenderSettings b,
                                                double level, const StopRequest* stop) {
   const std::vector<std::int32_t> lights = lights_by_power(scene.lights);
-  LayerSet by_light;
+  LayerSet by_light = scattered_light();
   by_light.light_parts = std::int32_t(lights.size());
   for (std::int32_t light = 0; light < scene.lights.count(); ++light) {
     const auto place = std::ranges::find(lights, light);
     by_light.light_part.push_back(place == lights.end() ? LayerSet::none
                                                         : std::int32_t(place - lights.begin()));
   }
-  a.layers.push_back(by_light);
-  b.layers.push_back(by_light);
+  for (RenderSettings* const settings : {&a, &b}) {
+    settings->layers = {by_light};
+    settings->keeps_luminances_of_layer = false;
+  }
   const RenderResult of_a = render(scene, a, {}, stop), of_b = render(scene, b, {}, stop);
   std::vector<LightDifference> differences;
   if (of_a.is_interrupted || of_b.is_interrupted) return differences;

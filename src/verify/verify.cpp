@@ -57,6 +57,10 @@ RenderSettings settings_of(const VerifySettings& asked, const Estimator& estimat
   settings.seed = hash64(hash64(asked.seed) + number);
   settings.threads = asked.threads;
   settings.isa = asked.isa;
+  if (!asked.against) {
+    settings.layers.push_back(scattered_light());
+    settings.keeps_luminances_of_layer = true;
+  }
   return settings;
 }
 
@@ -144,6 +148,20 @@ class Runs {
   std::vector<std::int32_t> materials_;
   double brightest_, start_s_;
 };
+
+/// Of a lobe that reflects a light, light samples may have met nothing, and then do not tell how much a hit
+/// adds: what another estimator has met does. Where both techniques are weighed there are no such hits.
+void share_steps(std::vector<VerifiedEstimator>& estimators) {
+  double step = 0;  // Of one sample.
+  for (const VerifiedEstimator& each : estimators)
+    if (each.estimator.integrator.path_rules()->light_samples())
+      step = std::max(step, each.image.whole.step() * each.samples_per_pixel);
+  for (VerifiedEstimator& each : estimators) {
+    const PathRules& rules = *each.estimator.integrator.path_rules();
+    if (rules.light_samples() && !rules.needs_both_pdfs())
+      set_unseen_step(each.image, step / each.samples_per_pixel);
+  }
+}
 
 std::vector<VerifiedPair> compare_all(const std::vector<VerifiedEstimator>& estimators, double level) {
   std::vector<VerifiedPair> pairs;
@@ -261,6 +279,7 @@ VerifyResult verify(const Scene& scene, const Estimators& estimators, const Veri
     else
       result.is_interrupted = true;
   }
+  share_steps(result.estimators);
   if (settings.against && !result.estimators.empty()) add_foreign(runs, settings, result);
   result.pairs = compare_all(result.estimators, settings.level);
   find_odd(result);

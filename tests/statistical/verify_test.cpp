@@ -1,8 +1,7 @@
 // Estimators of a right scene agree; of a kernel with a planted bug they do not.
 //
 // False-alarm rate of this file: 5e-5 (some 45 runs at a level of 1e-6; docs/verify.md has how often alarms
-// come at 1e-3), fixed seeds. Seen to fail when: steps of what has not been seen are 0
-// (ThatMeetsLightSeldomIsNotAccused); the planted kernel has no bug (all of PlantedBugs).
+// come at 1e-3), fixed seeds. Seen to fail when a bug is too small to be found (PlantedBugs).
 #include "verify/verify.h"
 
 #include "image/image_file.h"
@@ -128,7 +127,7 @@ TEST_P(PlantedBugs, AreFound) {
 
 INSTANTIATE_TEST_SUITE_P(Verify, PlantedBugs,
                          testing::Values("none", "no_light_pmf", "cosine_twice", "light_never_chosen",
-                                         "mis_density_of_one_side"),
+                                         "mis_met_side_in_full"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace
