@@ -104,8 +104,7 @@ json to_json(const IntegratorCheck& check) {
             {"samples_wrong", diagnosis.samples_wrong},
             {"share_explained", diagnosis.share_explained},
             {"runner_up", diagnosis.runner_up},
-            {"share_runner_up", diagnosis.share_runner_up},
-            {"log10_odds", diagnosis.log10_odds}}},
+            {"share_runner_up", diagnosis.share_runner_up}}},
           {"probes", probes},
           {"rays", rays_of(check)},
           {"points", points_of(check)}};

@@ -54,10 +54,9 @@ std::string diagnosis_of(const json& result) {
   if (const std::string runner_up = text(diagnosis, "runner_up"); !runner_up.empty())
     html += fmt::format(
         "<p class=\"quiet\">The next best explanation of the single samples: {}. It explains {:.1f} % of the "
-        "{} that are wrong, the best {:.1f} %; it is 10<sup>{:.0f}</sup> times less likely.</p>\n",
+        "{} that are wrong, the best {:.1f} %. This is a rank, no probability.</p>\n",
         runner_up, 100 * diagnosis["share_runner_up"].get<double>(),
-        diagnosis["samples_wrong"].get<std::int64_t>(), 100 * diagnosis["share_explained"].get<double>(),
-        diagnosis["log10_odds"].get<double>());
+        diagnosis["samples_wrong"].get<std::int64_t>(), 100 * diagnosis["share_explained"].get<double>());
   return html;
 }
 

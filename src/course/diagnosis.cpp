@@ -178,7 +178,7 @@ class Diagnosing {
   }
 
   void find_in_terms() {
-    constexpr double tiny = 2e-3, enough = 0.9, most = 0.75;
+    constexpr double tiny = 2e-3, enough = 0.9;
     const bool is_black = is_all_black();
     if (double(fits_.wrong) <= tiny * double(fits_.samples) && fits_.samples > 0) return;
     if (fits_.best.empty() || fits_.samples == 0) {
@@ -191,7 +191,6 @@ class Diagnosing {
       if (fits_.best[i].is_of_one_class() || !best.is_of_one_class()) {
         result_.runner_up = text_of_fit(fits_.best[i]);
         result_.share_runner_up = share_explained(fits_.best[i]);
-        result_.log10_odds = (fits_.best[i].cost() - best.cost()) / std::log(10.0);
         break;
       }
     if (result_.share_explained < enough) {
@@ -199,7 +198,7 @@ class Diagnosing {
         add(nothing_returned, "", "every sample is 0");
       else
         result_.is_unknown = true;
-      if (is_black || result_.share_explained < most) return;
+      return;
     }
     if (is_black && !explains_black(best)) {
       add(nothing_returned, "", "every sample is 0");
@@ -312,12 +311,15 @@ class Diagnosing {
   void find_in_emission() {
     for (const RayEvidence& ray : evidence_.rays) {
       if (!ray.is_light || sum_of(ray.expected) == 0 || has(nothing_returned)) continue;
+      constexpr double alike = 1e-2;
       const double mean = ray.channels[0].mean + ray.channels[1].mean + ray.channels[2].mean;
-      if (std::abs(mean - sum_of(ray.expected)) < 1e-2 * sum_of(ray.expected)) continue;
-      // What nothing explains may well change the light that is seen, too.
-      if (result_.is_unknown && mean != 0) continue;
-      add(emission_missing, mean == 0 ? "they are black" : "",
-          fmt::format("a light that shines with {:.4g} is seen with {:.4g}", sum_of(ray.expected), mean));
+      const double share = mean / sum_of(ray.expected);
+      if (std::abs(share) < alike)
+        add(emission_missing, "they are black",
+            fmt::format("a light that shines with {:.4g} is seen with {:.4g}", sum_of(ray.expected), mean));
+      else if (std::isfinite(share) && std::abs(share - 1) > alike &&
+               std::abs(share / result_.fit.factor - 1) > alike)
+        result_.is_unknown = true;  // As bright as neither itself nor the factor of all makes it.
     }
   }
 

@@ -22,7 +22,6 @@ struct Diagnosis {
   bool is_unknown = false;             ///< Something is wrong that no finding explains.
   std::string runner_up;               ///< The next best explanation of the single samples; may be empty.
   double share_explained = 0, share_runner_up = 0;  ///< Of the samples that are wrong.
-  double log10_odds = 0;                            ///< Of the best against the runner-up.
   std::int64_t samples_compared = 0, samples_wrong = 0;
 };
 

@@ -71,8 +71,9 @@ class Gathering {
     for (const ProbeRay& ray : loaded.probe.rays) {
       const std::uint64_t stream = sample_stream(settings_.seed, int(lines_.size()), 0, 0);
       const Line& line = lines_.emplace_back(Line{ray, ProbeReceiver(loaded, ray), stream});
+      const ExpectedRadiance expected = line.receiver.expected();
       evidence_.rays.push_back(
-          {probe, loaded.probe.of, line.receiver.is_light(), line.receiver.expected(), {}, {}});
+          {probe, loaded.probe.of, line.receiver.is_light(), expected.mean, expected.evenness, {}, {}});
     }
   }
 

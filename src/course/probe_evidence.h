@@ -22,6 +22,7 @@ struct RayEvidence {
   ProbeOf of;
   bool is_light;           ///< The ray meets one.
   Color<double> expected;  ///< W/(m^2 sr)
+  Color<double> evenness;  ///< Of its samples; see ExpectedRadiance.
   std::array<RunningStatistics, 3> channels;
   /// Of a channel minus its expected share of the sum: of mean zero where shares are right.
   std::array<RunningStatistics, 3> shares;

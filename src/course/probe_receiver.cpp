@@ -108,13 +108,14 @@ LightPointFacts ProbeReceiver::facts(std::int32_t mesh, const Vec3f& position, c
   return f;
 }
 
-Color<double> ProbeReceiver::expected() const {
+ExpectedRadiance ProbeReceiver::expected() const {
   const Colorf own = emitted();
-  Color<double> sum{own.r, own.g, own.b};
-  if (!is_surface_) return sum;
+  Color<double> sum{0, 0, 0}, square{0, 0, 0};
   const int cells = probe_.probe.has_blockers ? cells_with_rays : cells_free;
   const Geometry& geometry = probe_.loaded.scene.geometry;
-  for (const std::int32_t mesh : probe_.mesh_of_light)
+  for (const std::int32_t mesh : probe_.mesh_of_light) {
+    if (!is_surface_) break;
+    const double light_area = probe_.light_areas[std::size_t(probe_.light_of_mesh[std::size_t(mesh)])];
     for (std::int32_t k = 0; k < geometry.triangles[std::size_t(mesh)]; ++k) {
       const Corners c = triangle_of(geometry, mesh, k);
       const Vec3<double> u = (c[1] - c[0]) / double(cells), v = (c[2] - c[0]) / double(cells);
@@ -131,9 +132,18 @@ Color<double> ProbeReceiver::expected() const {
             f.area = cell_area;
             const Colorf value = right_terms(f).value();
             sum = sum + Color<double>{value.r, value.g, value.b};
+            const double inverse_probability = light_area * double(probe_.mesh_of_light.size()) / cell_area;
+            square = square + inverse_probability * Color<double>{double(value.r) * value.r,
+                                                                  double(value.g) * value.g,
+                                                                  double(value.b) * value.b};
           }
     }
-  return sum;
+  }
+  const auto evenness = [](double mean, double mean_square) {
+    return mean_square > 0 ? mean * mean / mean_square : 1.0;
+  };
+  return {sum + Color<double>{own.r, own.g, own.b},
+          {evenness(sum.r, square.r), evenness(sum.g, square.g), evenness(sum.b, square.b)}};
 }
 
 }  // namespace etendue

@@ -23,6 +23,14 @@ struct LoadedProbe {
   std::vector<double> light_areas;  ///< m^2
 };
 
+/// What a ray to a receiver should bring.
+struct ExpectedRadiance {
+  Color<double> mean{0, 0, 0};  ///< W/(m^2 sr)
+  /// Of samples that take each light alike and points uniform on it: mean squared over mean square, in (0,
+  /// 1]. Small where few of them bring nearly all; 1 where nothing comes.
+  Color<double> evenness{1, 1, 1};
+};
+
 class ProbeReceiver {
  public:
   /// `probe` must outlive it.
@@ -39,7 +47,7 @@ class ProbeReceiver {
   LightPointFacts facts(std::int32_t mesh, const Vec3f& position, const Vec3f& ng) const;
 
   /// Radiance towards the camera: emitted, and reflected of all lights, by a fine grid on each triangle.
-  Color<double> expected() const;
+  ExpectedRadiance expected() const;
 
  private:
   /// But for visibility.

@@ -39,8 +39,8 @@ class CourseCheck : public testing::Test {
     return check_module(module,
                         {.seed = 11, .probe_seed = 12, .folder = folder.path(), .at = [](const auto&) {}});
   }
-  IntegratorCheck check_of(const char* name) const {
-    for (const json& mistake : read_json("mistakes.json"))
+  IntegratorCheck check_of(const char* name, const char* file = "mistakes.json") const {
+    for (const json& mistake : read_json(file))
       if (mistake["name"] == name) {
         test::write_file(folder.path() / "light_integrator.cpp", edited(mistake["edits"]));
         const fs::path module = folder.path() / (std::string(name) + ".so");
@@ -68,6 +68,13 @@ TEST_F(CourseCheck, PassesTheRightOne) {
   EXPECT_GT(found.diagnosis.samples_compared, 1000);
 }
 
+TEST_F(CourseCheck, PassesTheRightOneThatMissesTheSliverOfAHiddenLight) {
+  const IntegratorCheck found =
+      check_module(ETENDUE_BINARY_DIR "/tests/libcourse_light_integrator.so",
+                   {.seed = 20040, .probe_seed = 30040, .folder = folder.path(), .at = [](const auto&) {}});
+  EXPECT_TRUE(found.is_right());
+}
+
 TEST_F(CourseCheck, NamesAMistakeInOneTerm) {
   EXPECT_THAT(names(check_of("light-choice-probability-missing")),
               testing::ElementsAre("light-choice-probability-missing"));
@@ -75,6 +82,12 @@ TEST_F(CourseCheck, NamesAMistakeInOneTerm) {
 
 TEST_F(CourseCheck, NamesAMistakeThatNoSingleSampleShows) {
   EXPECT_THAT(names(check_of("number-used-twice")), testing::ElementsAre("number-used-twice"));
+}
+
+TEST_F(CourseCheck, NamesNothingWhereALightIsSeenTooBright) {
+  const IntegratorCheck found = check_of("emission twice", "unlisted.json");
+  EXPECT_THAT(names(found), testing::IsEmpty());
+  EXPECT_TRUE(found.diagnosis.is_unknown);
 }
 
 TEST(PlantedMistakes, EachIsAnEditOfTheRightOne) {
