@@ -12,6 +12,7 @@ void add_course_command(CLI::App& app, int& exit_code) {
   add_course_probe_command(*course, exit_code);
   add_course_grade_command(*course, exit_code);
   add_course_pack_command(*course, exit_code);
+  add_course_lab_command(*course, exit_code);
 }
 
 }  // namespace etendue::app

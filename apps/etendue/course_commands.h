@@ -12,5 +12,6 @@ void add_course_check_command(CLI::App& course, int& exit_code);
 void add_course_probe_command(CLI::App& course, int& exit_code);
 void add_course_grade_command(CLI::App& course, int& exit_code);
 void add_course_pack_command(CLI::App& course, int& exit_code);
+void add_course_lab_command(CLI::App& course, int& exit_code);
 
 }  // namespace etendue::app

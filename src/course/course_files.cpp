@@ -33,6 +33,16 @@ fs::path course_headers() {
   return place;
 }
 
+fs::path lab_page_file() {
+  const fs::path place = file_of_program("share/etendue/course/lab/page.html", "course/lab/page.html");
+  if (!fs::exists(place))
+    throw InputError(
+        fmt::format("the page of the lab is not where it should be, in {}\n"
+                    "  install Etendue again (cmake --install)",
+                    place.string()));
+  return place;
+}
+
 Exercise exercise_named(const std::string& name) {
   if (name != "ex3")
     throw InputError({}, fmt::format("unknown exercise '{}'", name), known_names(name, {"ex3"}));

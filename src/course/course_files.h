@@ -10,6 +10,9 @@ namespace etendue {
 /// Where <nori/...> is found. Throws InputError where the headers are not there.
 std::filesystem::path course_headers();
 
+/// The page of the lab, with @DATA@ where its pictures go. Throws InputError where it is not there.
+std::filesystem::path lab_page_file();
+
 /// What a student's folder starts with.
 struct Exercise {
   std::filesystem::path files;   ///< A folder: the student's file, its README, what is to be filled in.

@@ -43,9 +43,7 @@ std::string html_text(std::string_view text) {
   return html;
 }
 
-std::string png_in_page(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+std::string png_data_uri(std::string_view bytes) {
   if (bytes.empty()) return "";
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text = "data:image/png;base64,";
@@ -57,6 +55,11 @@ std::string png_in_page(const std::filesystem::path& file) {
       text += i + k <= bytes.size() ? digits[three >> (18 - 6 * k) & 63] : '=';
   }
   return text;
+}
+
+std::string png_in_page(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return png_data_uri(std::string{std::istreambuf_iterator<char>(in), {}});
 }
 
 std::string html_head(std::string_view title) {

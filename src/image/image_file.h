@@ -34,6 +34,8 @@ void write_exr(const std::filesystem::path& file, const Image& image);
 /// black: a PNG holds no more. A pixel with a NaN is magenta so that it is seen. Renamed and errors as
 /// write_exr; all three channels are needed.
 void write_png(const std::filesystem::path& file, const Image& image);
+/// The bytes of a PNG of a grey image, of its channel G, encoded as by write_png.
+std::string grey_png(const Image& image);
 
 /// The first part of an EXR, scanlines or tiles: what its display window shows, black beside the data window;
 /// all channels as float by name in alphabetical order, and the attributes that are strings. Of a mip-mapped

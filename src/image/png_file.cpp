@@ -32,29 +32,53 @@ const std::vector<float>& values_of(const std::filesystem::path& file, const Ima
   return channel->values;
 }
 
-}  // namespace
+using Pixels = std::vector<std::array<png_byte, 3>>;
 
-void write_png(const std::filesystem::path& file, const Image& image) {
+Pixels pixels_of(const std::filesystem::path& file, const Image& image) {
   const auto &r = values_of(file, image, "R"), &g = values_of(file, image, "G"),
              &b = values_of(file, image, "B");
-  std::vector<std::array<png_byte, 3>> pixels(r.size());
+  Pixels pixels(r.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (std::isnan(r[i]) || std::isnan(g[i]) || std::isnan(b[i]))
       pixels[i] = {255, 0, 255};
     else
       pixels[i] = {srgb_from_linear(r[i]), srgb_from_linear(g[i]), srgb_from_linear(b[i])};
   }
+  return pixels;
+}
 
-  TemporaryFile temporary(file);
+/// 8 bits: libpng then tags the file as sRGB.
+png_image png_of(const Image& image, png_uint_32 format) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = png_uint_32(image.width);
   png.height = png_uint_32(image.height);
-  png.format = PNG_FORMAT_RGB;  // 8 bits: libpng then tags the file as sRGB.
+  png.format = format;
+  return png;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& file, const Image& image) {
+  const Pixels pixels = pixels_of(file, image);
+  TemporaryFile temporary(file);
+  png_image png = png_of(image, PNG_FORMAT_RGB);
   errno = 0;
   if (!png_image_write_to_stdio(&png, temporary.stream(), 0, pixels.data(), 0, nullptr))
     temporary.fail_to_write(png.message);
   temporary.commit();
+}
+
+std::string grey_png(const Image& image) {
+  std::vector<png_byte> greens;
+  for (const auto& pixel : pixels_of("a picture", image)) greens.push_back(pixel[1]);
+  png_image png = png_of(image, PNG_FORMAT_GRAY);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, greens.data(), 0, nullptr))
+    throw InputError(png.message);
+  bytes.resize(size);
+  return bytes;
 }
 
 }  // namespace etendue
