@@ -2,6 +2,7 @@
 
 #include "interrupt.h"
 #include "messages.h"
+#include "render/check_settings.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -45,10 +46,8 @@ std::optional<Pilot> settle_samples(const RenderOptions& options, const Scene& s
     throw InputError(
         fmt::format("--spp {} with --error: it is the most there may be, and pilots alone take {}",
                     *options.samples_per_pixel, least_pilot_samples));
-  // Samples of a pixel, and those of one vertex of each, are numbered by 32 bits.
-  const PathRules* rules = settings.integrator.path_rules();
-  const std::int64_t numbers = (std::int64_t(1) << 30) / (rules ? rules->most_samples() : 1);
-  const int most = int(std::min<std::int64_t>(numbers, options.samples_per_pixel.value_or(1 << 16)));
+  const int most = int(std::min<std::int64_t>(most_samples_of_pixel(settings.integrator),
+                                              options.samples_per_pixel.value_or(1 << 16)));
   if (!options.is_quiet) say("pilots find out how many samples a pixel that takes ...\n");
   const Pilot pilot = goal ? samples_for_error(scene, settings, *goal, most, &stop_request)
                            : samples_for_time(scene, settings, *options.seconds, most, &stop_request);

@@ -19,6 +19,15 @@ std::string advice(int samples, int replicates) {
                                                 : fmt::format("{}, or take {} samples a pixel", divide, more);
 }
 
+/// Samples of a pixel, and those of one vertex of each, are numbered by 32 bits.
+constexpr std::int64_t most_numbers = std::int64_t(1) << 32;
+
+/// The most that a sample takes of light samples, or of BSDF samples, at one vertex.
+std::int64_t numbers_of_sample(const IntegratorSettings& integrator) {
+  const PathRules* rules = integrator.path_rules();
+  return rules ? rules->most_samples() : 1;
+}
+
 }  // namespace
 
 void check_settings(const RenderSettings& settings) {
@@ -30,14 +39,17 @@ void check_settings(const RenderSettings& settings) {
     throw InputError(fmt::format("{} samples a pixel cannot be split into {} equal replicates\n{}",
                                  settings.samples_per_pixel, replicates,
                                  advice(settings.samples_per_pixel, replicates)));
-  // Samples of a pixel, and those of one vertex of each, are numbered by 32 bits.
-  const PathRules* rules = settings.integrator.path_rules();
-  const std::int64_t numbers = std::int64_t(settings.samples_per_pixel) * (rules ? rules->most_samples() : 1);
-  if (numbers > std::int64_t(1) << 32)
+  const std::int64_t of_sample = numbers_of_sample(settings.integrator);
+  const std::int64_t numbers = settings.samples_per_pixel * of_sample;
+  if (numbers > most_numbers)
     throw InputError(
         fmt::format("{} samples a pixel with {} light or BSDF samples each are {}, more than "
                     "the 4294967296 that can be told apart; take fewer of one of them",
-                    settings.samples_per_pixel, rules->most_samples(), numbers));
+                    settings.samples_per_pixel, of_sample, numbers));
+}
+
+std::int64_t most_samples_of_pixel(const IntegratorSettings& integrator) {
+  return most_numbers / 4 / numbers_of_sample(integrator);
 }
 
 }  // namespace etendue

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "render/check_settings.h"
 
 #include <algorithm>
 #include <bit>
@@ -142,9 +143,8 @@ AllocationPilot allocation_for(const Scene& scene, const RenderSettings& setting
   const float everywhere =
       share_of_mean * float(std::accumulate(widths.begin(), widths.end(), 0.0) / double(widths.size()));
   for (float& width : widths) width += everywhere;
-  const PathRules* rules = settings.integrator.path_rules();
-  const std::int64_t most_numbers = (std::int64_t(1) << 30) / (rules ? rules->most_samples() : 1);
-  const std::int64_t most_of_replicate = std::max<std::int64_t>(most_numbers / pilot.replicates, 1);
+  const std::int64_t most_of_replicate =
+      std::max<std::int64_t>(most_samples_of_pixel(settings.integrator) / pilot.replicates, 1);
   pilot.allocation = allocate(result.film.width(), widths, double(left) / pilot.replicates,
                               int(std::bit_floor(std::uint64_t(most_of_replicate))));
   return pilot;
