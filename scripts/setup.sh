@@ -14,6 +14,7 @@ names what to install.
 groups: build    compilers, libraries, test framework
         report   what demo.sh's page needs
         course   what makes readme.pdf of a hand-in: etendue course pack
+        browser  tests of pages in a browser
         clang    the second compiler
         develop  clang-format, clang-tidy, what fuzzing needs besides clang
 END

@@ -50,7 +50,7 @@ constexpr std::string_view page = R"(<!doctype html>
         at("messages").textContent = state.messages;
         at("picture").className = state.is_bad ? "old" : "";
       }
-      if (state.picture !== picture) {
+      if (state.picture > 0 && state.picture !== picture) {
         picture = state.picture;
         at("picture").src = "/picture.png?" + picture;
       }
