@@ -107,7 +107,7 @@ class Judging {
     const auto of = [](ProbeOf what) { return [what](const RayEvidence& ray) { return ray.of == what; }; };
     const Tested mean = test_means(evidence_, [](const RayEvidence&) { return true; });
     add("mean", mean, "all means are right");
-    add("light shares", test_shares(evidence_), "each light has its share");
+    add_shares();
     const bool is_plain_right =
         add("unshadowed", test_means(evidence_, of(ProbeOf::unshadowed)), "without shadows all is right");
     add_kind("shadows", of(ProbeOf::shadows), is_plain_right,
@@ -151,6 +151,18 @@ class Judging {
     property.what = bright_ones(evidence_, is_dark, is_any);
     property.verdict = is_any ? Verdict::wrong : Verdict::cannot_tell;
     if (!is_any) property.what = "what is wrong everywhere hides it; what must be black is";
+  }
+
+  void add_shares() {
+    const bool is_black =
+        std::all_of(evidence_.rays.begin(), evidence_.rays.end(), [](const RayEvidence& ray) {
+          return ray.is_light ||
+                 (ray.channels[0].mean == 0 && ray.channels[1].mean == 0 && ray.channels[2].mean == 0);
+        });
+    if (is_black)
+      properties_.push_back({"light shares", Verdict::cannot_tell, "no light has arrived"});
+    else
+      add("light shares", test_shares(evidence_), "each light has its share");
   }
 
   void add_exact(const char* name, std::int64_t bad, const std::string& what,

@@ -12,14 +12,15 @@ namespace {
 
 using nlohmann::json;
 
-/// In one line: what ended it, or the mistakes by their names.
+/// In one line: what ended it, or the mistakes by their names, and what else befell.
 std::string found_in(const json& result) {
   if (!result.contains("diagnosis")) return result["why"].get<std::string>();
   std::string text;
   for (const json& one : result["diagnosis"]["findings"])
     text += (text.empty() ? "" : ", ") + one["name"].get<std::string>();
   if (result["diagnosis"]["is_unknown"] == true) text += text.empty() ? "unknown" : ", unknown";
-  return text;
+  const std::string befell = result["why"].get<std::string>();
+  return text.empty() || befell.empty() ? text + befell : text + "; " + befell;
 }
 
 std::string group_of(const json& result) {

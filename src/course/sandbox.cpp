@@ -22,29 +22,46 @@ namespace {
 
 constexpr int not_started = 126;  ///< Exit code of a process that could not become the program.
 
+/// Bytes in the files below these folders.
+std::uintmax_t bytes_in(const std::vector<std::filesystem::path>& folders) {
+  std::uintmax_t bytes = 0;
+  for (const std::filesystem::path& folder : folders) {
+    std::error_code gone;  // Files come and go while they are looked at.
+    for (std::filesystem::recursive_directory_iterator file(folder, gone), end; !gone && file != end;
+         file.increment(gone)) {
+      std::error_code unknown_size;
+      if (!file->is_regular_file(unknown_size)) continue;
+      const std::uintmax_t size = file->file_size(unknown_size);
+      if (!unknown_size) bytes += size;
+    }
+  }
+  return bytes;
+}
+
 /// In the new process. Does not come back.
-[[noreturn]] void become(char* const* words, int output, const SandboxRules& rules) {
+[[noreturn]] void become(char* const* words, const char* folder, int output, const SandboxRules& rules) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody would end it
   dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
-  if (rules.take_on()) execv(words[0], words);
+  if (chdir(folder) == 0 && rules.take_on()) execv(words[0], words);
   for (;;) syscall(SYS_exit_group, not_started);
 }
 
 class Process {
  public:
   Process(const std::vector<std::string>& words, const SandboxLimits& limits, const SandboxRules& rules)
-      : limits_(limits), start_(std::chrono::steady_clock::now()) {
+      : limits_(limits), bytes_before_(bytes_in(limits.writable)), start_(std::chrono::steady_clock::now()) {
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0)
       throw InputError(fmt::format("cannot start {}: {}", words[0], std::strerror(errno)));
+    const std::string folder = limits.folder.empty() ? "." : limits.folder.string();
     process_ = fork();
-    if (process_ == 0) become(arguments.data(), ends[1], rules);
+    if (process_ == 0) become(arguments.data(), folder.c_str(), ends[1], rules);
     close(ends[1]);
     output_ = ends[0];
     if (process_ < 0) {
@@ -73,6 +90,10 @@ class Process {
         result.is_cut_short = true;
         return;
       }
+      if (is_room_used_up()) {
+        result.is_out_of_room = true;
+        return;
+      }
       pollfd ready{output_, POLLIN, 0};
       if (poll(&ready, 1, int(1000 * std::min(left, 0.1)) + 1) <= 0) {
         if (has_ended()) return;
@@ -88,13 +109,14 @@ class Process {
 
   /// Waits for what has closed its output, within the time; then ends it and all that it started.
   void finish(SandboxResult& result) {
-    while (!result.is_out_of_time && !result.is_cut_short && !has_ended()) {
+    while (!result.is_ended() && !has_ended()) {
       usleep(1000);
       result.is_out_of_time = seconds() > limits_.seconds;
+      result.is_out_of_room = is_room_used_up();
     }
     end();
     result.seconds = seconds();
-    if (result.is_out_of_time || result.is_cut_short) return;
+    if (result.is_ended()) return;
     if (WIFSIGNALED(status_)) result.signal = WTERMSIG(status_);
     if (WIFEXITED(status_)) result.exit_code = WEXITSTATUS(status_);
     result.is_out_of_time = result.signal == SIGXCPU;
@@ -103,6 +125,12 @@ class Process {
  private:
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  /// Looked at ten times a second at most.
+  bool is_room_used_up() {
+    if (seconds() < next_look_) return false;
+    next_look_ = seconds() + 0.1;
+    return bytes_in(limits_.writable) > bytes_before_ + limits_.written_bytes;
   }
   bool has_ended() {
     if (!is_waited_for_) is_waited_for_ = waitpid(process_, &status_, WNOHANG) == process_;
@@ -116,6 +144,8 @@ class Process {
   }
 
   const SandboxLimits& limits_;
+  std::uintmax_t bytes_before_;
+  double next_look_ = 0;
   std::chrono::steady_clock::time_point start_;
   pid_t process_ = -1;
   int output_ = -1, status_ = 0;
@@ -175,11 +205,14 @@ std::size_t memory_for_rendering() {
 }
 
 std::string explanation(const SandboxResult& result, const SandboxLimits& limits) {
+  std::string text = result.signal != 0 ? what_signal_means(result.signal) : std::string();
   if (result.is_out_of_time)
-    return fmt::format(
+    text = fmt::format(
         "it was not done after {:.0f} s and was ended: a loop that does not end, or far too much work",
         limits.seconds);
-  std::string text = result.signal != 0 ? what_signal_means(result.signal) : std::string();
+  if (result.is_out_of_room)
+    text = fmt::format("it wrote files of more than the {:.1f} GB that it may fill, and was ended",
+                       1e-9 * double(limits.written_bytes));
   if (result.output.find("bad_alloc") != std::string::npos)
     text = fmt::format("it asked for more memory than the {:.1f} GiB that it may have",
                        double(limits.memory_bytes) / double(1 << 30));

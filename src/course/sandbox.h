@@ -16,6 +16,8 @@ struct SandboxLimits {
   std::size_t file_bytes = std::size_t{256} << 20;   ///< Of each file that it writes.
   std::size_t output_bytes = std::size_t{64} << 10;  ///< Of what it prints; the rest is counted and dropped.
   std::vector<std::filesystem::path> writable{};     ///< Folders that it may write to; nothing else.
+  std::size_t written_bytes = std::size_t{1} << 30;  ///< That may come to stand in these, about.
+  std::filesystem::path folder{};                    ///< That it runs in; empty: that of this program.
   bool may_start_programs = false;                   ///< As compilers must.
 };
 
@@ -23,13 +25,16 @@ struct SandboxResult {
   int exit_code = 0;  ///< Where it ended by itself.
   int signal = 0;     ///< That ended it; 0: none did.
   bool is_out_of_time = false;
-  bool is_cut_short = false;  ///< `must_end` asked for it.
-  std::string output;         ///< Standard output and error as they came, the first bytes of it.
+  bool is_cut_short = false;    ///< `must_end` asked for it.
+  bool is_out_of_room = false;  ///< It wrote more than it may.
+  std::string output;           ///< Standard output and error as they came, the first bytes of it.
   std::uint64_t printed_bytes = 0;
   double seconds = 0;
   std::vector<std::string> not_held{};  ///< Limits that this system's kernel cannot hold it to.
 
-  bool is_done() const { return exit_code == 0 && signal == 0 && !is_out_of_time && !is_cut_short; }
+  bool is_done() const { return exit_code == 0 && signal == 0 && !is_ended(); }
+  /// Before it was done, from outside.
+  bool is_ended() const { return is_out_of_time || is_cut_short || is_out_of_room; }
 };
 
 /// Runs `words` (the program by its path, then its arguments) to its end. It has no network, may signal no

@@ -3,6 +3,9 @@
 #include "base/error.h"
 #include "course/course_files.h"
 
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <iterator>
 
@@ -25,11 +28,27 @@ nlohmann::json left_in(const fs::path& folder) {
                                                                                       : nlohmann::json();
 }
 
+/// What the student's code wrote, for the reader; empty where it wrote nothing.
+std::string written_files(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& file : fs::directory_iterator(folder))
+    names.push_back(file.path().filename().string());
+  if (names.empty()) return "";
+  std::sort(names.begin(), names.end());
+  constexpr std::size_t most = 3;
+  const std::size_t shown = std::min(names.size(), most);
+  return fmt::format("it wrote {}{}, which no integrator has to",
+                     fmt::join(names.begin(), names.begin() + std::ptrdiff_t(shown), ", "),
+                     names.size() > shown ? fmt::format(" and {} more", names.size() - shown) : "");
+}
+
 }  // namespace
 
 nlohmann::json check_submission(const Submission& submission, const SubmissionCheckSettings& settings) {
-  const fs::path module = settings.work / "light_integrator.so", folder = settings.work / "check";
   fs::create_directories(settings.work);
+  const fs::path work = fs::canonical(settings.work);  // The student's code runs in another folder.
+  const fs::path module = work / "light_integrator.so", folder = work / "check",
+                 of_student = work / "written";
   nlohmann::json result{{"folder", submission.folder.string()}, {"seconds", 0.0}, {"why", ""}};
   if (const std::optional<int> group = group_number(submission.source())) result["group"] = *group;
   const Compilation compilation = compile(submission.source(), module, CompiledFor::speed);
@@ -40,8 +59,10 @@ nlohmann::json check_submission(const Submission& submission, const SubmissionCh
     return result;
   }
   // What an earlier check has left is not this one's.
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  for (const fs::path& one : {folder, of_student}) {
+    fs::remove_all(one);
+    fs::create_directories(one);
+  }
   std::vector<std::string> words{settings.program,
                                  "course",
                                  "probe",
@@ -54,13 +75,17 @@ nlohmann::json check_submission(const Submission& submission, const SubmissionCh
   if (settings.has_scenes)
     for (const char* name : {"area_sampling.xml", "phong_plates.xml"})
       words.insert(words.end(), {"--scene", exercise_named("ex3").scenes / name});
-  const SandboxLimits limits{
-      .seconds = settings.seconds, .memory_bytes = memory_for_rendering(), .writable = {folder}};
+  const SandboxLimits limits{.seconds = settings.seconds,
+                             .memory_bytes = memory_for_rendering(),
+                             .writable = {folder, of_student},
+                             .folder = of_student};
   const SandboxResult ended = run_in_sandbox(words, limits);
   result["seconds"] = compilation.seconds + ended.seconds;
   result["printed"] = ended.output;
   result["printed_bytes"] = ended.printed_bytes;
   result["why"] = explanation(ended, limits);
+  if (const std::string written = written_files(of_student); !written.empty())
+    result["why"] = result["why"] == "" ? written : result["why"].get<std::string>() + "; " + written;
   result["at"] = text_in(folder / "at.txt");
   const nlohmann::json left = ended.is_done() ? left_in(folder) : nlohmann::json();
   if (left.is_null()) {

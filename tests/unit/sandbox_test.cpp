@@ -66,6 +66,21 @@ TEST(Sandbox, LimitsMemory) {
   EXPECT_THAT(result.output, HasSubstr("MemoryError"));
 }
 
+TEST(Sandbox, EndsWhatFillsItsFolder) {
+  const test::TemporaryFolder folder;
+  SandboxLimits limits{.seconds = 30, .writable = {folder.path()}, .folder = folder.path()};
+  limits.written_bytes = 1 << 20;
+  const char* fill =
+      "import time\nfor i in range(100000): open(f'{i}.txt', 'w').write('x' * 100000); time.sleep(.01)";
+  for (const std::string& code :
+       {std::string(fill), "import os; os.close(1); os.close(2)\n" + std::string(fill)}) {
+    const SandboxResult result = run_python(code, limits);
+    EXPECT_TRUE(result.is_out_of_room);
+    EXPECT_THAT(explanation(result, limits), HasSubstr("it wrote files of more than"));
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "0.txt"));
+}
+
 TEST(Sandbox, LetsItWriteToOneFolderOnly) {
   const test::TemporaryFolder ours, others;
   std::ofstream(others.path() / "kept") << "text";
