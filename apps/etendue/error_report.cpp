@@ -110,9 +110,11 @@ void add_error_stats(const Rendering& rendering, nlohmann::ordered_json& json) {
     error["pilot"] = {{"seconds", rendering.pilots.samples->seconds},
                       {"samples", rendering.pilots.samples->samples}};
     if (const std::optional<ErrorGoal> goal = error_goal(rendering.options))
-      error["goal"] = {{"relative", goal->relative},
-                       {"share", goal->share},
-                       {"reached", share_within(rendering.result.film, rendering.errors.intervals, *goal)}};
+      error["goal"] = {
+          {"relative", goal->relative},
+          {"share", goal->share},
+          {"within_by_bars", share_within(rendering.result.film, rendering.errors.intervals, *goal)},
+          {"bars_over_errors", rendering.pilots.samples->bars_over_errors}};
   }
   const std::array shares = shares_of_rules(rendering);
   for (std::size_t rule = 0; rule < shares.size(); ++rule) error["trust"][rule_names[rule]] = shares[rule];
@@ -126,9 +128,11 @@ void report_errors(const Rendering& rendering) {
   if (rendering.options.is_quiet || rendering.result.replicates < 2) return;
   report_intervals(rendering);
   if (const std::optional<ErrorGoal> goal = error_goal(rendering.options))
-    say("{:.1f} % of pixels have a half-width below {:g} % ({:g} % were asked for)\n",
+    say("{:.1f} % of pixels have a bar below {:g} %; {:g} % were asked for, of errors, and the bars are "
+        "{:.1f} "
+        "times as wide as these\n",
         100 * share_within(rendering.result.film, rendering.errors.intervals, *goal), 100 * goal->relative,
-        100 * goal->share);
+        100 * goal->share, rendering.pilots.samples->bars_over_errors);
   for (const RegionErrors& region : rendering.errors.regions) {
     const KnownMean& mean = region.mean.luminance;
     say("{}: mean luminance {:.6g} +- {:.2g}\n", region.name, mean.mean, mean.interval.upper - mean.mean);

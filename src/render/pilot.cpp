@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
-#include <limits>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace etendue {
@@ -46,55 +46,49 @@ RenderResult render_pilot(const Scene& scene, const RenderSettings& settings, in
   return result;
 }
 
-/// Of each rendered pixel: half-width over what the goal allows; more than 1 in an image that met no light.
-std::vector<double> over_goal(const Film& film, std::span<const PixelInterval> intervals,
-                              const ErrorGoal& goal) {
-  const double floor = 0.01 * luminance(film.mean());
-  std::vector<double> ratios;
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x) {
-      const PixelInterval& interval = intervals[std::size_t(y) * std::size_t(film.width()) + std::size_t(x)];
-      if (interval.rule == IntervalRule::unknown) continue;
-      const double allowed = goal.relative * std::max(luminance(film.at(x, y).mean), floor);
-      const bool is_reached =
-          floor > 0 && (interval.rule == IntervalRule::black || interval.luminance_half_width == 0);
-      ratios.push_back(is_reached  ? 0
-                       : floor > 0 ? interval.luminance_half_width / allowed
-                                   : std::numeric_limits<double>::infinity());
-    }
-  return ratios;
+/// How far one of two pilots is from the goal; nothing where they were interrupted.
+std::optional<DistanceFromGoal> distance_of_pilots(const Scene& scene, const RenderSettings& settings,
+                                                   int samples, const ErrorGoal& goal, Pilot& pilot,
+                                                   const StopRequest* stop) {
+  RenderSettings of_second = settings;
+  of_second.seed = hash64(settings.seed + 1);
+  const RenderResult a = render_pilot(scene, settings, samples, pilot, stop);
+  if (pilot.is_interrupted) return std::nullopt;
+  const RenderResult b = render_pilot(scene, of_second, samples, pilot, stop);
+  if (pilot.is_interrupted) return std::nullopt;
+  pilot.is_dark = luminance(a.film.mean()) == 0 && luminance(b.film.mean()) == 0;
+  const std::vector<PixelInterval> intervals_a = pixel_intervals(a.film, a.luminances, goal.confidence),
+                                   intervals_b = pixel_intervals(b.film, b.luminances, goal.confidence);
+  return distance_from({a.film, b.film, intervals_a, intervals_b}, goal);
 }
 
 }  // namespace
 
-double share_within(const Film& film, std::span<const PixelInterval> intervals, const ErrorGoal& goal) {
-  const std::vector<double> ratios = over_goal(film, intervals, goal);
-  const auto within = std::count_if(ratios.begin(), ratios.end(), [](double ratio) { return ratio <= 1; });
-  return ratios.empty() ? 0 : double(within) / double(ratios.size());
-}
-
 Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, const ErrorGoal& goal, int most,
                         const StopRequest* stop) {
+  constexpr double of_independent = -0.5, of_nets = -0.75;
   Pilot pilot;
-  for (int samples = least_pilot_samples;;) {
-    const RenderResult result = render_pilot(scene, settings, samples, pilot, stop);
-    if (pilot.is_interrupted) return pilot;
-    pilot.is_dark = luminance(result.film.mean()) == 0;
+  double power = of_independent, factor_before = 0;
+  for (int samples = least_pilot_samples, samples_before = 0;;) {
+    const std::optional<DistanceFromGoal> distance =
+        distance_of_pilots(scene, settings, samples, goal, pilot, stop);
+    if (!distance) return pilot;
+    pilot.bars_over_errors = distance->bars_over_errors;
     if (pilot.is_dark && samples > least_pilot_samples) {
       pilot.samples_per_pixel = samples;
       return pilot;
     }
-    std::vector<double> ratios =
-        over_goal(result.film, pixel_intervals(result.film, result.luminances, goal.confidence), goal);
-    const auto of_share =
-        ratios.begin() +
-        std::clamp<std::ptrdiff_t>(std::ptrdiff_t(std::ceil(goal.share * double(ratios.size()))) - 1, 0,
-                                   std::ptrdiff_t(ratios.size()) - 1);
-    std::nth_element(ratios.begin(), of_share, ratios.end());
-    const double needed = samples * *of_share * *of_share;
+    if (std::isfinite(factor_before) && factor_before > 0 && distance->factor > 0) {
+      const double measured =
+          std::log(distance->factor / factor_before) / std::log(double(samples) / samples_before);
+      power = (of_independent + std::clamp(measured, of_nets, of_independent)) / 2;
+    }
+    const double needed = samples * std::pow(distance->factor, -1 / power);
     pilot.samples_per_pixel = rounded_up(needed, most);
     pilot.is_most = needed > pilot.samples_per_pixel;
     if (pilot.samples_per_pixel <= largest_growth * samples) return pilot;
+    samples_before = samples;
+    factor_before = distance->factor;
     samples = rounded_up(std::min(samples * largest_growth, pilot.samples_per_pixel / largest_growth), most);
   }
 }

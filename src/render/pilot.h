@@ -5,27 +5,20 @@
 // random numbers of their own decide, and fresh samples make the image.
 #pragma once
 
-#include "film/pixel_intervals.h"
+#include "film/error_goal.h"
 #include "render/render.h"
 
-#include <span>
+#include <optional>
 
 namespace etendue {
-
-/// A share of the pixels is to have an interval of half-width at most `relative` times the larger of the
-/// pixel and 1 % of the image's mean, by luminance. Pixels that met no light, such as the background, count
-/// as within.
-struct ErrorGoal {
-  double relative;           ///< Positive.
-  double share = 0.99;       ///< In (0, 1].
-  double confidence = 0.95;  ///< Of the intervals.
-};
 
 struct Pilot {
   int samples_per_pixel = 0;  ///< What the image needs, or the most there may be; at least 16.
   bool is_most = false;       ///< It would need more.
   bool is_dark = false;       ///< No pilot met any light: the image will be black.
-  std::int64_t samples = 0;   ///< That the pilots took, of all pixels.
+  /// For an error: how much wider the image's bars will be than its errors (DistanceFromGoal).
+  double bars_over_errors = 1;
+  std::int64_t samples = 0;  ///< That the pilots took, of all pixels.
   double seconds = 0;
   bool is_interrupted = false;  ///< Then it tells nothing.
 };
@@ -38,15 +31,13 @@ struct AllocationPilot {
   double seconds = 0;
 };
 
-/// Share of the rendered pixels that reach `goal.relative`. \param intervals of the film, of
-/// `goal.confidence`
-double share_within(const Film& film, std::span<const PixelInterval> intervals, const ErrorGoal& goal);
-
 /// Samples a pixel that pilots take at the least, and images after them.
 inline constexpr int least_pilot_samples = 16;
 
-/// From pilots of 16 samples a pixel and more, the last with at least an eighth of what is needed; errors are
-/// taken to fall with the root of the samples. `settings` say all but the number of samples.
+/// From pilots of 16 samples a pixel and more, the last with at least an eighth of what is needed, each of
+/// two renders (distance_from). From there on errors are taken to fall with a power of the samples half-way
+/// between -1/2 and that of the last two pilots, which lies between -1/2 and -3/4. `settings` say all but the
+/// number of samples.
 /// \param most samples a pixel, at least 16; no more are asked for
 Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, const ErrorGoal& goal, int most,
                         const StopRequest* stop = nullptr);

@@ -1,0 +1,45 @@
+// How far from the truth an image may be, and how far it is.
+#pragma once
+
+#include "film/film.h"
+#include "film/pixel_intervals.h"
+
+#include <span>
+
+namespace etendue {
+
+/// Of a share of the pixels, half the interval that holds the true value with `confidence` is to be at most
+/// `relative` times the larger of the pixel and 1 % of the image's mean, by luminance. Pixels that met no
+/// light, such as the background, count as within.
+struct ErrorGoal {
+  double relative;           ///< Positive.
+  double share = 0.99;       ///< In (0, 1].
+  double confidence = 0.95;  ///< Of the intervals.
+};
+
+/// Share of the rendered pixels whose bars are within the goal. \param intervals of the film, of
+/// `goal.confidence`
+double share_within(const Film& film, std::span<const PixelInterval> intervals, const ErrorGoal& goal);
+
+/// Two renders of one scene, alike but for their random numbers.
+struct RenderedTwice {
+  const Film &a, &b;
+  std::span<const PixelInterval> intervals_a, intervals_b;
+};
+
+struct DistanceFromGoal {
+  /// By what the errors of one of the two images must shrink to reach the goal: below 1 where they are
+  /// within, 0 where nothing has an error; infinite where no light was met.
+  double factor;
+  /// How much wider the images' own bars are than their errors, of the pixels that decide.
+  double bars_over_errors;
+};
+
+/// By errors and not by bars, which are on the safe side by as much as samples complement each other. The
+/// pixels are put in order by the standard errors that both renders say; where the goal's share ends, the
+/// squared difference of the two says how far off those are: twice the variance of one, on average over the
+/// pixels around there (as many as four times those that may be farther off). A pixel that both have found
+/// black while alike ones around it are lit has the error of these.
+DistanceFromGoal distance_from(const RenderedTwice& images, const ErrorGoal& goal);
+
+}  // namespace etendue
