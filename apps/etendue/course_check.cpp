@@ -28,15 +28,28 @@ void print_properties(const json& properties) {
     fmt::print("{:>11}  {:<22} {}\n", text(one["verdict"]), text(one["name"]), text(one["what"]));
 }
 
-void print_diagnosis(const json& diagnosis) {
+/// The probes that are right, or those that are not, in words.
+std::string probes_in_words(const json& probes, bool are_right) {
+  std::string words;
+  for (const json& probe : probes)
+    if (probe["is_right"] == are_right)
+      words += fmt::format("{}{} ({})", words.empty() ? "" : "; ", text(probe["name"]), text(probe["what"]));
+  return words.empty() ? "none" : words;
+}
+
+void print_diagnosis(const json& result) {
+  const json& diagnosis = result["diagnosis"];
   for (const json& one : diagnosis["findings"]) {
     const std::string how = text(one["how"]);
     fmt::print("\n{}{}\n  {}\n  read {}\n", text(one["what"]), how.empty() ? "" : " (" + how + ")",
                text(one["evidence"]), text(one["read"]));
   }
   if (diagnosis["is_unknown"] == true)
-    fmt::print("\n{}: no mistake that is known here explains it; the report shows where it is\n",
-               diagnosis["findings"].empty() ? "something is wrong" : "something else is wrong, too");
+    fmt::print(
+        "\n{}: no mistake that is known here explains it\n  wrong: {}\n  right: {}\n  the report shows it "
+        "sample by sample\n",
+        diagnosis["findings"].empty() ? "something is wrong" : "something else is wrong, too",
+        probes_in_words(result["probes"], false), probes_in_words(result["probes"], true));
   if (const std::string runner_up = text(diagnosis["runner_up"]); !runner_up.empty())
     fmt::print(
         "\nthe next best explanation: {}\n  it explains {:.1f} % of the wrong samples, against {:.1f} %\n",
@@ -56,7 +69,7 @@ int run(const CheckOptions& options) {
   if (outcome == "ended") say("{}", text(result["printed"]));
   if (result.contains("properties")) {
     print_properties(result["properties"]);
-    if (outcome == "wrong") print_diagnosis(result["diagnosis"]);
+    if (outcome == "wrong") print_diagnosis(result);
   }
   if (outcome == "ended" && !text(result["at"]).empty())
     fmt::print("\nended while it was at: {}\n", text(result["at"]));

@@ -29,14 +29,14 @@ constexpr std::string_view page = R"(<!doctype html>
   body { font: 15px sans-serif; margin: 1.5em; background: #26262a; color: #ddd; }
   #status { font-weight: bold; margin-bottom: 1em; }
   #status.bad { color: #ff9c80; }
-  img { max-width: 100%; display: block; background: #000; }
+  img { max-width: 100%; background: #000; }
   img.old { opacity: 0.45; }
   pre { white-space: pre-wrap; background: #1a1a1d; padding: 1em; }
   pre:empty { display: none; }
 </style>
 <div id="status">...</div>
 <pre id="messages"></pre>
-<img id="picture" alt="what your integrator renders">
+<img id="picture" hidden alt="what your integrator renders">
 <script>
   const at = id => document.getElementById(id);
   let seen = -1, picture = -1;
@@ -53,6 +53,7 @@ constexpr std::string_view page = R"(<!doctype html>
       if (state.picture > 0 && state.picture !== picture) {
         picture = state.picture;
         at("picture").src = "/picture.png?" + picture;
+        at("picture").hidden = false;
       }
     } catch (error) {
       seen = -1;

@@ -93,7 +93,10 @@ json to_json(const IntegratorCheck& check) {
                         {"read", text.read}});
   }
   json probes = json::array();
-  for (const Probe& probe : check.probes) probes.push_back({{"name", probe.name}, {"what", probe.what}});
+  const std::vector<bool> wrong = wrong_probes(check.evidence);
+  for (std::size_t i = 0; i < wrong.size(); ++i)
+    probes.push_back(
+        {{"name", check.probes[i].name}, {"what", check.probes[i].what}, {"is_right", !wrong[i]}});
   return {{"is_right", check.is_right()},
           {"level", level_of_probes + level_of_scenes},
           {"properties", properties},

@@ -36,6 +36,15 @@ std::string properties_table(const json& result) {
       rows, result["level"].get<double>());
 }
 
+/// Those that are right, or those that are not.
+std::string list_of_probes(const json& probes, bool are_right) {
+  std::string items;
+  for (const json& probe : probes)
+    if (probe["is_right"] == are_right)
+      items += fmt::format("<li>{}: {}</li>", text(probe, "name"), text(probe, "what"));
+  return items.empty() ? "<p>none</p>" : "<ul>" + items + "</ul>";
+}
+
 std::string diagnosis_of(const json& result) {
   const json& diagnosis = result["diagnosis"];
   std::string html = "<h2>What is wrong</h2>\n";
@@ -47,10 +56,10 @@ std::string diagnosis_of(const json& result) {
   }
   if (diagnosis["is_unknown"] == true)
     html += fmt::format(
-        "<div class=\"found\"><p class=\"what\">{} wrong that no known mistake explains.</p><p>The table and "
-        "the "
-        "plot below say where.</p></div>\n",
-        diagnosis["findings"].empty() ? "Something is" : "Something else is");
+        "<div class=\"found\"><p class=\"what\">{} wrong that no known mistake explains.</p><p>Wrong "
+        "are:</p>{}<p>Right are:</p>{}</div>\n",
+        diagnosis["findings"].empty() ? "Something is" : "Something else is",
+        list_of_probes(result["probes"], false), list_of_probes(result["probes"], true));
   if (const std::string runner_up = text(diagnosis, "runner_up"); !runner_up.empty())
     html += fmt::format(
         "<p class=\"quiet\">The next best explanation of the single samples: {}. It explains {:.1f} % of the "

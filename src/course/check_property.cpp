@@ -57,8 +57,9 @@ Tested test_means(const ProbeEvidence& evidence, const IsAmong& is_among) {
     for (std::size_t c = 0; c < 3; ++c) {
       if (evenness[c] < least_evenness) continue;
       tested.take(p_value(ray.channels[c], expected[c], allowance_of(ray)), [&] {
-        return fmt::format("ray {}, {}: {:.5g} +- {:.2g}, and {:.5g} is right", i, channel_names[c],
-                           ray.channels[c].mean, ray.channels[c].standard_error(), expected[c]);
+        return fmt::format("{}, ray {}, {}: {:.5g} +- {:.2g}, and {:.5g} is right", evidence.names[ray.probe],
+                           i, channel_names[c], ray.channels[c].mean, ray.channels[c].standard_error(),
+                           expected[c]);
       });
     }
   }
@@ -75,7 +76,8 @@ Tested test_shares(const ProbeEvidence& evidence) {
     const double mean = ray.channels[0].mean + ray.channels[1].mean + ray.channels[2].mean;
     for (std::size_t c = 0; c < 3; ++c)
       tested.take(p_value(ray.shares[c], 0, allowance_of(ray)), [&] {
-        return fmt::format("ray {}: the {} light has {:.4f} of all, and {:.4f} is right", i, channel_names[c],
+        return fmt::format("{}, ray {}: the {} light has {:.4f} of all, and {:.4f} is right",
+                           evidence.names[ray.probe], i, channel_names[c],
                            mean != 0 ? ray.channels[c].mean / mean : 0, expected[c] / all);
       });
   }
@@ -215,6 +217,16 @@ std::string_view verdict_name(Verdict verdict) {
 
 std::vector<CheckedProperty> properties_of(const ProbeEvidence& evidence) {
   return Judging(evidence).judge();
+}
+
+std::vector<bool> wrong_probes(const ProbeEvidence& evidence) {
+  const std::int64_t tests = test_means(evidence, [](const RayEvidence&) { return true; }).tests;
+  std::vector<bool> wrong;
+  for (std::size_t probe = 0; probe < evidence.names.size(); ++probe)
+    wrong.push_back(
+        is_rejected(test_means(evidence, [probe](const RayEvidence& ray) { return ray.probe == probe; }).p,
+                    level_of_probes, tests));
+  return wrong;
 }
 
 }  // namespace etendue

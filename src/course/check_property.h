@@ -27,4 +27,7 @@ inline constexpr double level_of_probes = 5e-4, level_of_scenes = 5e-4;
 /// Of all that the probes tell.
 std::vector<CheckedProperty> properties_of(const ProbeEvidence& evidence);
 
+/// Of each probe, whether a mean of its rays is wrong.
+std::vector<bool> wrong_probes(const ProbeEvidence& evidence);
+
 }  // namespace etendue

@@ -13,7 +13,10 @@ namespace {
 
 using enum MistakeClass;
 
-double sum_of(const Color<double>& c) { return c.r + c.g + c.b; }
+template <class T>
+double sum_of(const Color<T>& c) {
+  return double(c.r) + double(c.g) + double(c.b);
+}
 
 /// How likely each light of a probe is to be chosen, if it is so by this.
 std::vector<double> shares_by(const std::vector<double>& weights) {
@@ -123,21 +126,21 @@ std::string text_of_fit(const TermFit& fit) {
 std::string text_of_shadow_rays(const ProbeEvidence& e) {
   std::string text;
   const auto add = [&](std::int64_t count, std::int64_t of, const char* what) {
-    if (count > 0) text += fmt::format("; {} of {} {}", count, of, what);
+    if (count > 0) text += fmt::format("{} of {} {}; ", count, of, what);
   };
   add(e.ended_on_light, e.rays_to_visible, "rays to points that are seen end on the light itself");
   add(e.ended_on_receiver, e.rays_to_visible,
       "rays to points that are seen end on the surface that they start from");
   add(e.ended_elsewhere, e.rays_to_visible, "rays to points that are seen end on something else");
   if (e.rays_to_hidden > 0)
-    text += fmt::format("; {} rays to points that are hidden meet nothing, or the light", e.rays_to_hidden);
+    text += fmt::format("{} rays to points that are hidden meet nothing, or the light; ", e.rays_to_hidden);
   return text;
 }
 
 class Diagnosing {
  public:
   explicit Diagnosing(const ProbeEvidence& evidence)
-      : evidence_(evidence), fits_(fit_terms(evidence, with_choice(evidence))) {}
+      : evidence_(evidence), samples_(with_choice(evidence)), fits_(fit_terms(evidence, samples_)) {}
 
   Diagnosis of(bool is_wrong) {
     result_.samples_compared = fits_.samples;
@@ -178,7 +181,7 @@ class Diagnosing {
   }
 
   void find_in_terms() {
-    constexpr double tiny = 2e-3, enough = 0.9;
+    constexpr double tiny = 2e-3, enough = 0.9, worth_telling = 0.1;
     const bool is_black = is_all_black();
     if (double(fits_.wrong) <= tiny * double(fits_.samples) && fits_.samples > 0) return;
     if (fits_.best.empty() || fits_.samples == 0) {
@@ -188,7 +191,8 @@ class Diagnosing {
     const TermFit& best = fits_.best.front();
     result_.share_explained = share_explained(best);
     for (std::size_t i = 1; i < fits_.best.size(); ++i)
-      if (fits_.best[i].is_of_one_class() || !best.is_of_one_class()) {
+      if ((fits_.best[i].is_of_one_class() || !best.is_of_one_class()) &&
+          share_explained(fits_.best[i]) >= worth_telling) {
         result_.runner_up = text_of_fit(fits_.best[i]);
         result_.share_runner_up = share_explained(fits_.best[i]);
         break;
@@ -208,10 +212,9 @@ class Diagnosing {
     std::ranges::stable_sort(result_.fit.mistakes, {},
                              [&](const TermMistake* one) { return misses_alone(*one); });
     for (const TermMistake* one : result_.fit.mistakes) {
-      std::string evidence =
-          fmt::format("{} of {} wrong samples come out so, to the bit but for rounding; {}",
-                      percent(result_.share_explained), fits_.wrong, ratios(evidence_));
-      if (one->mistake == visibility) evidence += text_of_shadow_rays(evidence_);
+      std::string evidence = fmt::format("{} of {} wrong samples come out so, up to rounding; {}",
+                                         percent(result_.share_explained), fits_.wrong, ratios(evidence_));
+      if (one->mistake == visibility) evidence = text_of_shadow_rays(evidence_) + evidence;
       add(one->mistake, std::string(one->how), evidence);
     }
     // Where the BSDF is sampled too, the factor may be what one of two techniques counts for.
@@ -308,22 +311,50 @@ class Diagnosing {
                       evidence_.first_invalid));
   }
 
+  /// What comes from a light that is seen, but for what it reflects: over what it emits.
+  double share_of_emission(std::size_t ray) const {
+    double rest = 0, count = 0;
+    for (const SampleEvidence& sample : samples_) {
+      if (sample.ray != ray) continue;
+      rest += sum_of(sample.value) - sum_of(predicted(sample, result_.fit));
+      ++count;
+    }
+    return rest / (count * sum_of(evidence_.rays[ray].emitted));
+  }
+
   void find_in_emission() {
-    for (const RayEvidence& ray : evidence_.rays) {
-      if (!ray.is_light || sum_of(ray.expected) == 0 || has(nothing_returned)) continue;
+    for (std::size_t i = 0; i < evidence_.rays.size(); ++i) {
+      const RayEvidence& ray = evidence_.rays[i];
+      if (sum_of(ray.emitted) == 0 || has(nothing_returned)) continue;
       constexpr double alike = 1e-2;
-      const double mean = ray.channels[0].mean + ray.channels[1].mean + ray.channels[2].mean;
-      const double share = mean / sum_of(ray.expected);
+      const double share = share_of_emission(i);
       if (std::abs(share) < alike)
         add(emission_missing, "they are black",
-            fmt::format("a light that shines with {:.4g} is seen with {:.4g}", sum_of(ray.expected), mean));
+            fmt::format("a light that shines with {:.4g} is seen with {:.4g}", sum_of(ray.emitted),
+                        share * sum_of(ray.emitted)));
       else if (std::isfinite(share) && std::abs(share - 1) > alike &&
                std::abs(share / result_.fit.factor - 1) > alike)
         result_.is_unknown = true;  // As bright as neither itself nor the factor of all makes it.
+      else if (reflects_nothing(ray))
+        add(emission_missing, "what they reflect of other lights",
+            fmt::format(
+                "a light that shines with {:.4g} reflects {:.4g} of another's light; it is seen with {:.4g}",
+                sum_of(ray.emitted), sum_of(ray.expected) - sum_of(ray.emitted), mean_of(ray)));
     }
   }
 
+  static double mean_of(const RayEvidence& ray) {
+    return ray.channels[0].mean + ray.channels[1].mean + ray.channels[2].mean;
+  }
+
+  static bool reflects_nothing(const RayEvidence& ray) {
+    constexpr double little = 1e-3;
+    const double emitted = sum_of(ray.emitted), reflected = sum_of(ray.expected) - emitted;
+    return reflected > little * emitted && std::abs(mean_of(ray) - emitted) < 0.05 * reflected;
+  }
+
   const ProbeEvidence& evidence_;
+  std::vector<SampleEvidence> samples_;
   TermFits fits_;
   Diagnosis result_;
 };

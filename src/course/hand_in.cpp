@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 namespace etendue {
 
@@ -40,10 +41,28 @@ std::string page_of(const Submission& submission) {
   return std::string(page_head) + converted.output;
 }
 
-/// Throws InputError where a tool is missing, or fails.
-fs::path make_pdf(const Submission& submission) {
+/// Pictures of a page that are not in the folder.
+std::vector<std::string> missing_pictures(const std::string& page, const fs::path& folder) {
+  constexpr std::string_view tag = "<img", source = " src=\"";
+  std::vector<std::string> missing;
+  for (std::size_t at = page.find(tag); at != std::string::npos; at = page.find(tag, at + 1)) {
+    const std::size_t begin = page.find(source, at);
+    if (begin == std::string::npos) break;
+    const std::size_t first = begin + source.size();
+    const std::string name = page.substr(first, page.find('"', first) - first);
+    if (name.find(':') == std::string::npos && !fs::exists(folder / name)) missing.push_back(name);
+  }
+  return missing;
+}
+
+/// Throws InputError where a tool is missing, or fails. \param problems takes what is not as it should be
+fs::path make_pdf(const Submission& submission, std::vector<std::string>& problems) {
   const fs::path page = submission.build_folder() / "readme.html", pdf = submission.folder / "readme.pdf";
-  std::ofstream(page) << page_of(submission);
+  const std::string text = page_of(submission);
+  for (const std::string& name : missing_pictures(text, submission.folder))
+    problems.push_back(
+        fmt::format("readme.md shows '{}', which is not in {}", name, submission.folder.string()));
+  std::ofstream(page) << text;
   if (!fs::exists("/usr/bin/weasyprint"))
     throw InputError(
         fmt::format("readme.pdf was not made: it needs WeasyPrint\n"
@@ -75,8 +94,11 @@ HandIn pack(const Submission& submission) {
     result.problems.emplace_back("light_integrator.cpp has no group number yet: #define GROUP_NUMBER");
   if (text_of(submission.text()) == text_of(exercise_named("ex3").files / "readme.md"))
     result.problems.emplace_back("readme.md is as it came: nothing is filled in");
+  else if (group.value_or(0) != 0 && text_of(submission.text()).find("\nGroup: 0 ") != std::string::npos)
+    result.problems.emplace_back(
+        fmt::format("readme.md still says 'Group: 0', and light_integrator.cpp has group {}", *group));
   try {
-    result.pdf = make_pdf(submission);
+    result.pdf = make_pdf(submission, result.problems);
   } catch (const InputError& error) {
     result.problems.emplace_back(error.what());
     // One that the student made by other means.

@@ -103,7 +103,8 @@ const std::vector<TermMistake>& term_mistakes() {
       {visibility, "nothing casts a shadow", [](T& t, const F&) { t.visibility = 1; }},
       {visibility, "lights cast no shadows",
        [](T& t, const F& f) { t.visibility = f.is_visible || f.is_hidden_by_light_only ? 1 : 0; }},
-      {visibility, "the shadow ray is not that from the receiver to the point",
+      {visibility,
+       "it is as the shadow rays that were cast say, and they meet other things than what lies between",
        [](T& t, const F& f) { t.visibility = f.is_visible_to_student ? 1 : 0; }},
       {visibility, "light comes only where it is hidden",
        [](T& t, const F& f) { t.visibility = f.is_visible ? 0 : 1; }},
@@ -119,6 +120,11 @@ const std::vector<TermMistake>& term_mistakes() {
        [](T& t, const F& f) { t.cos_receiver = std::abs(f.direction.z); }},
       {receiver_cosine_of_other_angle, "with the geometric normal",
        [](T& t, const F& f) { t.cos_receiver = clamped(f.cos_receiver_geometric); }},
+      {receiver_cosine_of_other_angle, "with the geometric normal, and the BSDF in its frame",
+       [](T& t, const F& f) {
+         t.cos_receiver = clamped(f.cos_receiver_geometric);
+         t.bsdf = f.bsdf_geometric;
+       }},
       {receiver_cosine_not_clamped, "|cos theta'|, and the BSDF of the mirrored direction",
        [](T& t, const F& f) {
          t.cos_receiver = std::abs(f.cos_receiver);

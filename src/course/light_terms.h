@@ -15,8 +15,10 @@ struct LightPointFacts {
   double area = 1, first_triangle_area = 1, triangle_count = 1;  ///< Areas in m^2.
   double distance = 1;                                           ///< m
   double cos_receiver = 0, cos_receiver_geometric = 0, cos_light = 0, cos_light_shading = 0, cos_view = 0;
-  Vec3<double> direction{0, 0, 1};                                       ///< To the light, world.
-  Colorf bsdf{0, 0, 0}, bsdf_of_world{0, 0, 0}, bsdf_mirrored{0, 0, 0};  ///< 1/sr
+  Vec3<double> direction{0, 0, 1};  ///< To the light, world.
+  /// 1/sr; the others with directions of the world, with the one to the light above the surface, and in the
+  /// frame of the geometric normal.
+  Colorf bsdf{0, 0, 0}, bsdf_of_world{0, 0, 0}, bsdf_mirrored{0, 0, 0}, bsdf_geometric{0, 0, 0};
   bool is_visible = true, is_hidden_by_light_only = false;
   bool is_visible_to_student = true;  ///< By the first ray that was cast for this point.
 };

@@ -202,6 +202,10 @@ void facing_away(Builder& builder, Numbers& numbers) {
   light({-0.8, numbers.between(-0.5, 0.5), 1}, {-0.5, 0.1, 1}, green);
   light({0, -0.9, numbers.between(0.7, 1.1)}, {0.1, -1, 0.3}, blue);
   rays_to_ground(builder, numbers, 4, 0.5);
+  // A plate out of the others' way that looks down: its back is lit, and looked at.
+  const Vec3d aside{numbers.between(-0.1, 0.1), 1.9, 0.4};
+  builder.polygon(about(aside, {0, 0, -1}, 0.15, 4, 0.7), {.bsdf = diffuse(0.7, 0.7, 0.7)});
+  builder.ray(aside, {numbers.between(-0.3, 0.3), numbers.between(-0.3, 0.3), 1}, 0.2);
 }
 
 /// The ground's shading normals lean over: what is low on one side is below their horizon.
@@ -279,8 +283,11 @@ void touching_light(Builder& builder, Numbers& numbers) {
 void lights_in_view(Builder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.5, 0.5, 0.5)});
   const Vec3d first{-0.5, numbers.between(-0.2, 0.2), 1}, second{0.7, numbers.between(-0.2, 0.2), 1.2};
-  builder.polygon(about(first, {0.3, 0.2, -1}, 0.3, 6, 0), {.radiance = {3, 2, 7}});
-  builder.polygon(about(second, {-0.2, 0.3, -1}, 0.4, 4, 0), {.radiance = {5, 8, 1}});
+  // Each reflects some of the other's light.
+  builder.polygon(about(first, {0.3, 0.2, -1}, 0.3, 6, 0),
+                  {.bsdf = diffuse(0.8, 0.8, 0.8), .radiance = {3, 2, 7}});
+  builder.polygon(about(second, {-0.2, 0.3, -1}, 0.4, 4, 0),
+                  {.bsdf = diffuse(0.7, 0.8, 0.6), .radiance = {5, 8, 1}});
   builder.ray(first, {numbers.between(-0.5, 0.8), 0, -1}, 0.5);
   builder.ray(second, {numbers.between(-0.8, 0.5), 0.2, -1}, 0.5);
   builder.ray(first, {0, numbers.between(-0.5, 0.5), 1}, 0.5);
@@ -303,7 +310,8 @@ std::vector<Probe> make_probes(std::uint64_t seed) {
       {"several_lights", "four lights of different sizes, powers and shapes about a glossy ground",
        ProbeOf::unshadowed, false, several_lights},
       {"three_lights", "three lights about a diffuse ground", ProbeOf::unshadowed, false, three_lights},
-      {"facing_away", "three lights, two of which are turned away", ProbeOf::back_faces, false, facing_away},
+      {"facing_away", "three lights, two of which are turned away, and a plate that is seen from behind",
+       ProbeOf::back_faces, false, facing_away},
       {"leaning_normals", "a ground whose shading normals lean over: some lights are below their horizon",
        ProbeOf::horizon, false, leaning_normals},
       {"blocker", "a plate hides one of three lights", ProbeOf::shadows, true, blocker},
@@ -313,8 +321,8 @@ std::vector<Probe> make_probes(std::uint64_t seed) {
        coarse_curved_light},
       {"touching_light", "a light that stands on the ground", ProbeOf::unshadowed, false, touching_light,
        false},
-      {"lights_in_view", "lights that the camera sees, their backs, and the sky", ProbeOf::emission, false,
-       lights_in_view}};
+      {"lights_in_view", "lights that the camera sees and that light each other, their backs, and the sky",
+       ProbeOf::emission, false, lights_in_view}};
   std::vector<Probe> probes;
   for (const Kind& kind : kinds) {
     Numbers numbers(seed * 0x9e3779b97f4a7c15u + probes.size());

@@ -61,6 +61,7 @@ class Gathering {
  private:
   void add_rays(const LoadedProbe& loaded) {
     const std::size_t probe = probes_.size() - 1;
+    evidence_.names.push_back(loaded.probe.name);
     std::vector<double>& powers = evidence_.powers.emplace_back();
     for (std::size_t light = 0; light < loaded.light_areas.size(); ++light) {
       const Colorf radiance = from_student(loaded.scene.getLuminaires()[light]->getColor());
@@ -72,8 +73,14 @@ class Gathering {
       const std::uint64_t stream = sample_stream(settings_.seed, int(lines_.size()), 0, 0);
       const Line& line = lines_.emplace_back(Line{ray, ProbeReceiver(loaded, ray), stream});
       const ExpectedRadiance expected = line.receiver.expected();
-      evidence_.rays.push_back(
-          {probe, loaded.probe.of, line.receiver.is_light(), expected.mean, expected.evenness, {}, {}});
+      evidence_.rays.push_back({probe,
+                                loaded.probe.of,
+                                line.receiver.is_light(),
+                                expected.mean,
+                                line.receiver.emitted(),
+                                expected.evenness,
+                                {},
+                                {}});
     }
   }
 

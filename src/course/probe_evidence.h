@@ -22,6 +22,7 @@ struct RayEvidence {
   ProbeOf of;
   bool is_light;           ///< The ray meets one.
   Color<double> expected;  ///< W/(m^2 sr)
+  Colorf emitted;          ///< Of that, by the surface itself.
   Color<double> evenness;  ///< Of its samples; see ExpectedRadiance.
   std::array<RunningStatistics, 3> channels;
   /// Of a channel minus its expected share of the sum: of mean zero where shares are right.
@@ -43,6 +44,7 @@ struct PointsOfLight {
 };
 
 struct ProbeEvidence {
+  std::vector<std::string> names;  ///< Of the probes.
   std::vector<RayEvidence> rays;
   std::vector<SampleEvidence> samples;
   std::vector<std::vector<PointsOfLight>> points;  ///< By probe and light.

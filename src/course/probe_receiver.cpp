@@ -82,6 +82,7 @@ LightPointFacts ProbeReceiver::unshadowed_facts(std::int32_t mesh, const Vec3f& 
   const nori::Vector3f wi = hit_.toLocal(to_camera), wo = hit_.toLocal(to_light);
   f.bsdf = value(wi, wo);
   f.bsdf_of_world = value(to_camera, to_light);
+  f.bsdf_geometric = value(hit_.geoFrame.toLocal(to_camera), hit_.geoFrame.toLocal(to_light));
   f.bsdf_mirrored = value(wi, {wo.x(), wo.y(), std::abs(wo.z())});
 
   if (geometry.has_normals[std::size_t(mesh)] != 0) {

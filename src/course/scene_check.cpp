@@ -100,7 +100,7 @@ SceneCheck check_scene(const StudentModule& module, const std::string& integrato
   SceneCheck check;
   CheckedProperty& property = check.property;
   property = {"scene " + scene.stem().string(), Verdict::right, "", 3LL * columns * rows, 1};
-  double ratio_students = 0, ratio_lights = 0;
+  double ratio_students = 0, ratio_lights = 0, error_sq = 0;
   int wrong_blocks = 0;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
@@ -112,6 +112,7 @@ SceneCheck check_scene(const StudentModule& module, const std::string& integrato
                                                    channel);
         ratio_students += mine.mean;
         ratio_lights += right.mean;
+        error_sq += mine.variance() / double(mine.count) + right.variance() / double(right.count);
         const double p = welch_t_test(mine, right).p_value;
         property.p_value = std::min(property.p_value, std::isfinite(p) ? p : 0);
         is_wrong |= is_rejected(p, level_of_scenes, scenes * property.tests);
@@ -119,9 +120,9 @@ SceneCheck check_scene(const StudentModule& module, const std::string& integrato
       wrong_blocks += is_wrong;
     }
   if (wrong_blocks > 0 || students.invalid.count() > 0) property.verdict = Verdict::wrong;
-  property.what =
-      fmt::format("{} of {} blocks differ from the program's; brightness over all is {:.4f} of it",
-                  wrong_blocks, columns * rows, ratio_students / ratio_lights);
+  property.what = fmt::format(
+      "{} of {} blocks differ from the program's; brightness over all is {:.4f} +- {:.2g} of it",
+      wrong_blocks, columns * rows, ratio_students / ratio_lights, std::sqrt(error_sq) / ratio_lights);
   if (students.invalid.count() > 0)
     property.what += fmt::format("; {} invalid samples", students.invalid.count());
   const double exposure = exposure_for(lights.film);

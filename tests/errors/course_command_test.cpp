@@ -58,6 +58,21 @@ TEST_F(CourseCommand, BuildSaysWhatTheCompilerSays) {
   EXPECT_THAT(run({"course", "build", "."}).err, HasSubstr("there is no light_integrator.cpp in ."));
 }
 
+TEST_F(CourseCommand, PackTellsWhatIsLeftToDo) {
+  run({"course", "new", "ex3", "mine"});
+  std::string code = text_of("mine/light_integrator.cpp");
+  code.replace(code.find("GROUP_NUMBER 0"), 14, "GROUP_NUMBER 7");
+  write("mine/light_integrator.cpp", code);
+  write("mine/readme.md", text_of("mine/readme.md") + "![a picture](nowhere.png)\n");
+  const ProgramResult packed = run({"course", "pack", "mine"});
+  EXPECT_EQ(packed.exit_code, 1);
+  EXPECT_THAT(packed.out, HasSubstr("Exercise3_7.zip"));
+  EXPECT_THAT(packed.err, HasSubstr("readme.md still says 'Group: 0'"));
+  if (packed.err.find("readme.pdf was not made") == std::string::npos) {
+    EXPECT_THAT(packed.err, HasSubstr("shows 'nowhere.png', which is not in"));
+  }
+}
+
 TEST_F(CourseCommand, LabMakesAPageWithAllItsPictures) {
   const ProgramResult made = run({"course", "lab", "--quick", "-o", "lab.html"});
   EXPECT_EQ(made.exit_code, 0) << made.err;
