@@ -179,6 +179,8 @@ void one_light(Builder& builder, Numbers& numbers) {
   builder.polygon(about(center, {numbers.between(-0.3, 0.3), numbers.between(-0.3, 0.3), -1}, half, 4, 0.7),
                   {.radiance = {12, 9, 6}});
   rays_to_ground(builder, numbers, 4, 1.2);
+  // Past the light, from where only its back could be seen.
+  builder.ray({1.1, numbers.between(-0.3, 0.3), 0}, {0.05, 0, 1}, 2.8);
 }
 
 void several_lights(Builder& builder, Numbers& numbers) {
