@@ -45,7 +45,7 @@ bool take_layer(const Image& image, const std::string& layer, bool is_variance, 
 
 /// Errors taken for those of many samples.
 void set_normal(MeanMoments& pixel) {
-  constexpr double freedom = 15;  // As of 16 replicates.
+  const double freedom = MomentImage{}.replicates - 1;
   pixel.third = 0;
   pixel.variance_error_sq = 2 * pixel.variance * pixel.variance / freedom;
 }

@@ -70,7 +70,4 @@ using VerifyProgress = std::function<void(double fraction)>;
 VerifyResult verify(const Scene& scene, const Estimators& estimators, const VerifySettings& settings,
                     const VerifyProgress& progress = {}, const StopRequest* stop = nullptr);
 
-/// The material that each pixel shows through its middle, -1 where it shows none; rows from the top.
-std::vector<std::int32_t> materials_seen(const Scene& scene);
-
 }  // namespace etendue
