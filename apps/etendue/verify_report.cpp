@@ -133,6 +133,11 @@ std::string report_text(const VerifyResult& result, const Scene& scene, const Sc
   if (!result.foreign_noise.empty())
     text +=
         fmt::format("the noise of {} is {}\n", result.estimators.back().estimator.name, result.foreign_noise);
+  if (!result.foreign_hint.empty()) text += fmt::format("  {}\n", result.foreign_hint);
+  if (result.foreign_pixels_left_out > 0)
+    text +=
+        fmt::format("  {} of its pixels are left out: not numbers, or as white as a file of 8 bits can be\n",
+                    result.foreign_pixels_left_out);
   if (result.mishap) text += fmt::format("most of it would be explained if {}\n", *result.mishap);
   switch (result.verdict) {
     case Verdict::agree:

@@ -176,12 +176,16 @@ class Runs {
       met.of_lobes = std::max(met.of_lobes, seen.of_lobes * each.samples_per_pixel);
       met.of_others = std::max(met.of_others, seen.of_others * each.samples_per_pixel);
     }
+    const double by_chance = brightest_ * largest_diffuse_weight_;
     for (VerifiedEstimator& each : estimators) {
       const PathRules& rules = *each.estimator.integrator.path_rules();
-      const LeastSteps least = !rules.light_samples()
-                                   ? LeastSteps{brightest_, brightest_ * largest_diffuse_weight_}
-                               : rules.needs_both_pdfs() ? LeastSteps{0, met.of_others}
-                                                         : met;
+      LeastSteps least = met;
+      if (!rules.light_samples())
+        least = {brightest_, by_chance};
+      else if (rules.needs_both_pdfs())  // No sample adds more than one that meets the light by chance.
+        least = {0, std::min(met.of_others, by_chance)};
+      else if (rules.light_samples()->technique != LightTechnique::area)  // Density at least 1 / (2 pi).
+        least.of_others = std::min(met.of_others, 2 * scene_.lights.count() * by_chance);
       const double samples = each.samples_per_pixel;
       raise_steps(each.image, film, {least.of_lobes / samples, least.of_others / samples});
     }
@@ -287,9 +291,11 @@ void find_odd(VerifyResult& result) {
   }
 }
 
+/// Of our own.
 const VerifiedEstimator& most_precise(const std::vector<VerifiedEstimator>& estimators) {
-  return *std::min_element(estimators.begin(), estimators.end(),
-                           [](const auto& a, const auto& b) { return a.standard_error < b.standard_error; });
+  return *std::min_element(estimators.begin(), estimators.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.is_foreign, a.standard_error) < std::pair(b.is_foreign, b.standard_error);
+  });
 }
 
 /// The other renderer's image as one more estimator, its noise estimated where that is not known.
@@ -297,6 +303,8 @@ void add_foreign(const Runs& runs, const VerifySettings& settings, VerifyResult&
   ForeignImage foreign = *settings.against;
   if (foreign.noise.empty()) estimate_noise(foreign, most_precise(result.estimators).image.image);
   result.foreign_noise = foreign.noise;
+  result.foreign_hint = foreign.hint;
+  result.foreign_pixels_left_out = std::ranges::count(foreign.is_readable, 0);
   result.estimators.push_back(runs.verified_image({settings.against_name, {}}, foreign.image));
   result.estimators.back().is_foreign = true;
 }
