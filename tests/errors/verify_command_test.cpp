@@ -1,8 +1,8 @@
 // `etendue verify`: another renderer's image, right and wrong; what it says when it is interrupted.
 //
 // False-alarm rate of this file: about 1e-5 (some 10 right images at a level of 1e-6), fixed seeds. Seen to
-// fail when: variances of one sample are not divided by their number, rows are flipped by a wrong pixel, NaN
-// pixels are kept, an interrupted run writes no JSON.
+// fail when: variances of one sample are not divided by their number, mishaps are told by the image itself,
+// NaN pixels are kept, an interrupted run writes no JSON.
 #include "image/color_space.h"
 #include "image/image_file.h"
 #include "support/program.h"
