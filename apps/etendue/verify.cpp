@@ -25,7 +25,7 @@ namespace {
 struct VerifyOptions {
   std::string scene_file, json_file, map_file, against, against_stderr;
   std::vector<std::string> integrators;
-  std::optional<int> samples_per_pixel;
+  std::optional<int> samples_per_pixel, against_samples;
   std::optional<double> seconds;
   double level = 1e-3;
   RunOptions run;
@@ -71,8 +71,8 @@ int run(const VerifyOptions& options) {
   VerifySettings settings = settings_for(options);
   std::optional<ForeignImage> foreign;
   if (!options.against.empty()) {
-    foreign = read_foreign_image(options.against, options.against_stderr, loaded.scene.camera.width_px,
-                                 loaded.scene.camera.height_px);
+    foreign = read_foreign_image({options.against, options.against_stderr, options.against_samples},
+                                 loaded.scene.camera.width_px, loaded.scene.camera.height_px);
     settings.against = &*foreign;
     settings.against_name = options.against;
   }
@@ -117,7 +117,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   CLI::Option* spp = command
                          ->add_option("--spp", options->samples_per_pixel,
-                                      "Samples a pixel of each, rounded up to a multiple of 32")
+                                      "Samples a pixel of each, rounded up to a multiple of the replicates")
                          ->check(whole_number(1 << 20))
                          ->check(CLI::Range(1, 1 << 20));
   command->add_option("--time", options->seconds, "Seconds for all of them together [60]")
@@ -137,6 +137,11 @@ void add_verify_command(CLI::App& app, int& exit_code) {
           ->allow_extra_args(false);
   command->add_option("--against-stderr", options->against_stderr, "Image of its standard errors")
       ->allow_extra_args(false)
+      ->needs(against);
+  command
+      ->add_option("--against-spp", options->against_samples,
+                   "Samples a pixel that it was rendered with, for a layer of the variance of one sample")
+      ->check(whole_number(1 << 30))
       ->needs(against);
   command->add_option("--json", options->json_file, "JSON file with all pairs")->allow_extra_args(false);
   add_run_options(*command, options->run);

@@ -51,11 +51,12 @@ std::string shapes_of_material(const Scene& scene, const ScenePlaces& places, st
 }
 
 std::string region_text(const Region& region, const Scene& scene, const ScenePlaces& places) {
+  const std::string_view weighted = region.is_weighted ? ", by where it is known best" : "";
   switch (region.kind) {
     case Region::Kind::whole:
-      return "over the whole image";
+      return fmt::format("over the whole image{}", weighted);
     case Region::Kind::material:
-      return "on " + shapes_of_material(scene, places, region.material);
+      return fmt::format("on {}{}", shapes_of_material(scene, places, region.material), weighted);
     case Region::Kind::block:
       return fmt::format("in the block of pixels from {}, {}", region.x, region.y);
     case Region::Kind::pixel:
@@ -83,8 +84,10 @@ std::string pair_text(const VerifyResult& result, const VerifiedPair& pair, cons
   const double ratio = is_b_odd ? 1 / c.ratio : c.ratio, low = is_b_odd ? 1 / c.ratio_high : c.ratio_low,
                high = is_b_odd ? 1 / c.ratio_low : c.ratio_high;
   std::string text = fmt::format(
-      "{} differs from {}:\n  {:.4g} times its mean (95 %: {:.4g} to {:.4g}); most surely {} (p {})\n", odd,
-      other, ratio, low, high, region_text(c.strongest.region, scene, places), power_of_ten(pair.p_value));
+      "{} differs from {}:\n  {:.4g} times its mean (95 %: {:.4g} to {:.4g})\n"
+      "  most surely {}: {:.4g} times (p {})\n",
+      odd, other, ratio, low, high, region_text(c.strongest.region, scene, places),
+      is_b_odd ? 1 / c.strongest.ratio : c.strongest.ratio, power_of_ten(pair.p_value));
   text += fmt::format("  worst block of {} x {} pixels: from {}, {}, {:+.1f} standard errors\n", block_side,
                       block_side, c.worst_block.region.x, c.worst_block.region.y,
                       (is_b_odd ? -1 : 1) * c.worst_block.test.statistic);
@@ -130,6 +133,11 @@ std::string report_text(const VerifyResult& result, const Scene& scene, const Sc
   if (!result.foreign_noise.empty())
     text +=
         fmt::format("the noise of {} is {}\n", result.estimators.back().estimator.name, result.foreign_noise);
+  if (!result.foreign_hint.empty()) text += fmt::format("  {}\n", result.foreign_hint);
+  if (result.foreign_pixels_left_out > 0)
+    text +=
+        fmt::format("  {} of its pixels are left out: not numbers, or as white as a file of 8 bits can be\n",
+                    result.foreign_pixels_left_out);
   if (result.mishap) text += fmt::format("most of it would be explained if {}\n", *result.mishap);
   switch (result.verdict) {
     case Verdict::agree:

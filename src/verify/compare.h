@@ -1,37 +1,52 @@
 // Do two images of one scene agree: over the whole film, by material, by block and by pixel.
 #pragma once
 
+#include "verify/film_cells.h"
 #include "verify/moment_image.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace etendue {
 
+/// The least that one more event must be thought to add to a pixel, of those that are too rare for what has
+/// been found there to tell: a ray meets a small light, a light sample falls into a lobe or on the sliver of
+/// a light that is not below the horizon.
+struct LeastSteps {
+  double of_lobes = 0, of_others = 0;  ///< In cells that may have rare hits of a lobe; in the others.
+
+  double at(bool has_rare_hits) const { return has_rare_hits ? of_lobes : of_others; }
+  double most() const { return std::max(of_lobes, of_others); }
+};
+
 /// What an image is compared by.
 struct ComparedImage {
   MomentImage image;
-  /// What one more sample that finds light may add to a pixel, of samples that seldom do. 0 of others, whose
-  /// own samples tell.
-  double unseen_step = 0;
   MeanMoments whole{};                   ///< Sum over all pixels.
-  std::vector<MeanMoments> materials{};  ///< Sums over the pixels that show each.
-  std::vector<MeanMoments> blocks{};
-  std::vector<double> block_steps{};  ///< Of each block: MeanMoments::step of it, those around, and all.
+  std::vector<MeanMoments> materials{};  ///< Sums over the cells of each that are tested with it.
+  std::vector<MeanMoments> blocks{}, cells{};
+  LeastSteps steps{};
+  std::vector<double> block_steps{}, cell_steps{};  ///< Least steps there.
 };
 
-/// \param material_of_pixel that is seen through its middle, -1 where none is \param materials how many
-ComparedImage compared_image(MomentImage image, std::span<const std::int32_t> material_of_pixel,
-                             int materials, double unseen_step = 0);
+ComparedImage compared_image(MomentImage image, const FilmCells& film);
 
-void set_unseen_step(ComparedImage& image, double step);
+/// The steps that an image has on each kind of surface, wherever it is: where a highlight has been missed,
+/// what else has been found there has small steps.
+LeastSteps steps_seen(const ComparedImage& image, const FilmCells& film);
+/// At least these.
+void raise_steps(ComparedImage& image, const FilmCells& film, const LeastSteps& least);
 
 /// Parts of the film that are tested.
 struct Region {
   enum class Kind { whole, material, block, pixel } kind = Kind::whole;
   int x = 0, y = 0;           ///< Of a block's first pixel, or of a pixel.
   std::int32_t material = 0;  ///< Of Kind::material.
+  /// Its cells count by how well they are known; of the whole image those without rare hits, if there are
+  /// any.
+  bool is_weighted = false;
 };
 
 /// A region, how far apart two images are there.
@@ -39,6 +54,7 @@ struct Difference {
   Region region{};
   MeanTest test{};     ///< Of a - b.
   double p_value = 1;  ///< Of all tests of the pair together.
+  double ratio = 1;    ///< Of a to b.
 };
 
 struct Comparison {
@@ -46,16 +62,21 @@ struct Comparison {
   Difference strongest{};  ///< What it comes from.
   Difference worst_block{};
   double ratio = 1, ratio_low = 1, ratio_high = 1;  ///< Of the mean of a to that of b; 95 % interval.
-  double smallest_difference = 0;  ///< Of the whole image's mean, relative: found with probability 0.9.
+  /// Relative, found with probability 0.9: of the whole image's mean, or the same factor in all pixels
+  /// without rare hits, whichever is less.
+  double smallest_difference = 0;
 
-  /// Whether differences of the mean that matter would have been found at all.
+  /// Whether differences that matter would have been found at all.
   bool can_tell() const { return smallest_difference <= 0.25; }
 };
 
 /// Tests all regions; each of the four kinds has a quarter of the level, and within it Bonferroni's share.
+/// \param means, weights of the cells, from other samples than those of a and b; where a mean is 0, so is
+/// the weight
 /// \param level at which the pair is tested, for `smallest_difference`; p-values do not depend on it but that
 ///   those above it may be rounded up to 1
-Comparison compare(const ComparedImage& a, const ComparedImage& b, double level);
+Comparison compare(const ComparedImage& a, const ComparedImage& b, const FilmCells& film,
+                   std::span<const double> means, std::span<const double> weights, double level);
 
 /// a - b in standard errors, of each block.
 std::vector<double> block_differences(const ComparedImage& a, const ComparedImage& b);

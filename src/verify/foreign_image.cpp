@@ -6,6 +6,7 @@
 #include "image/image_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
@@ -28,24 +29,69 @@ double luminance_at(const std::vector<float>& rgb, std::size_t k) {
   return luminance(Color<double>{rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]});
 }
 
-/// A layer's variances by the names R, G, B; false where the file has none. Channels are taken to go
-/// together.
-bool take_layer(const Image& image, const std::string& layer, bool is_variance, MomentImage& to) {
-  const Channel *r = image.find(layer + ".R"), *g = image.find(layer + ".G"), *b = image.find(layer + ".B");
-  if (!r || !g || !b) return false;
-  for (std::size_t k = 0; k < to.pixels.size(); ++k) {
-    const auto error = [&](const Channel* channel) {
-      return is_variance ? std::sqrt(double(channel->values[k])) : double(channel->values[k]);
-    };
-    const double l = luminance(Color<double>{error(r), error(g), error(b)});
-    to.pixels[k].variance = l * l;
+/// The three channels of a layer; of the one without a name R, G and B.
+struct ColorLayer {
+  const Channel *r, *g, *b;
+
+  ColorLayer(const Image& image, const std::string& layer)
+      : r(image.find(layer.empty() ? "R" : layer + ".R")),
+        g(image.find(layer.empty() ? "G" : layer + ".G")),
+        b(image.find(layer.empty() ? "B" : layer + ".B")) {}
+  bool is_there() const { return r && g && b; }
+  Color<double> at(std::size_t k) const { return {r->values[k], g->values[k], b->values[k]}; }
+};
+
+/// The variance of the luminance where those of the channels are known: they are taken to go together.
+double variance_of_luminance(const Color<double>& variances) {
+  const auto root = [](double variance) { return std::sqrt(std::max(0.0, variance)); };
+  const double error = luminance(Color<double>{root(variances.r), root(variances.g), root(variances.b)});
+  return error * error;
+}
+
+/// The layer NAME of which there is an m2_NAME, the second moment of one sample.
+std::optional<std::string> layer_with_second_moment(const Image& image) {
+  const std::string begin = "m2_", end = ".R";
+  for (const Channel& channel : image.channels)
+    if (channel.name.starts_with(begin) && channel.name.ends_with(end))
+      return channel.name.substr(begin.size(), channel.name.size() - begin.size() - end.size());
+  return std::nullopt;
+}
+
+void take_noise_of_layers(const Image& image, std::optional<int> samples_per_pixel, ForeignImage& to) {
+  std::vector<MeanMoments>& pixels = to.image.pixels;
+  const auto take = [&](const std::string& layer, auto&& variances_at) {
+    for (std::size_t k = 0; k < pixels.size(); ++k)
+      pixels[k].variance = variance_of_luminance(variances_at(k));
+    to.noise = fmt::format("of its layer {}", layer);
+  };
+  if (const ColorLayer errors(image, "stderr"); errors.is_there()) {
+    take("stderr", [&](std::size_t k) { return errors.at(k) * errors.at(k); });
+  } else if (const ColorLayer variances(image, "variance"); variances.is_there()) {
+    take("variance", [&](std::size_t k) { return variances.at(k); });
+  } else {
+    const std::optional<std::string> moments = layer_with_second_moment(image);
+    const ColorLayer of_sample(image, "Variance"), second(image, moments ? "m2_" + *moments : "m2_"),
+        mean_of_it(image, moments.value_or("")), unnamed(image, "");
+    const ColorLayer& mean = mean_of_it.is_there() ? mean_of_it : unnamed;
+    const bool has_moments = second.is_there() && mean.is_there();
+    if (!of_sample.is_there() && !has_moments) return;
+    if (!samples_per_pixel) {
+      to.hint = fmt::format("its layer {} is of one sample: --against-spp N says how many there were",
+                            of_sample.is_there() ? "Variance" : "m2_" + *moments);
+      return;
+    }
+    const double share = 1.0 / *samples_per_pixel;
+    if (of_sample.is_there())
+      take("Variance", [&](std::size_t k) { return of_sample.at(k) * share; });
+    else
+      take("m2_" + *moments,
+           [&](std::size_t k) { return (second.at(k) + mean.at(k) * mean.at(k) * -1.0) * share; });
   }
-  return true;
 }
 
 /// Errors taken for those of many samples.
 void set_normal(MeanMoments& pixel) {
-  constexpr double freedom = 15;  // As of 16 replicates.
+  const double freedom = MomentImage{}.replicates - 1;
   pixel.third = 0;
   pixel.variance_error_sq = 2 * pixel.variance * pixel.variance / freedom;
 }
@@ -86,14 +132,21 @@ double srgb_from_linear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
+/// Of a number that is rounded to 8 bits of sRGB.
+double rounding_variance_8_bit(double linear) {
+  const double srgb = srgb_from_linear(std::max(0.0, linear)),
+               step = linear_from_srgb(srgb + 0.5 / 255) - linear_from_srgb(std::max(0.0, srgb - 0.5 / 255));
+  return step * step / 12;
+}
+
 }  // namespace
 
-ForeignImage read_foreign_image(const std::filesystem::path& file, const std::filesystem::path& stderr_file,
-                                int width, int height) {
-  const ColorImage colors = colors_of_size(file, width, height);
+ForeignImage read_foreign_image(const ForeignFiles& files, int width, int height) {
+  const ColorImage colors = colors_of_size(files.image, width, height);
   ForeignImage foreign;
-  const std::string ending = file.extension().string();
-  foreign.is_8_bit = ending == ".png" || ending == ".PNG" || ending == ".jpg" || ending == ".jpeg";
+  std::string ending = files.image.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  foreign.is_8_bit = ending == ".png" || ending == ".jpg" || ending == ".jpeg";
   foreign.image = {width, height, std::vector<MeanMoments>(colors.rgb.size() / 3)};
   for (std::size_t k = 0; k < foreign.image.pixels.size(); ++k) {
     const double l = luminance_at(colors.rgb, k);
@@ -101,19 +154,15 @@ ForeignImage read_foreign_image(const std::filesystem::path& file, const std::fi
     foreign.image.pixels[k] = {l, unknown, 0, 0};
     foreign.is_readable.push_back(std::isfinite(l) && !(foreign.is_8_bit && brightest >= 0.999f));
   }
-  if (!stderr_file.empty()) {
-    const ColorImage errors = colors_of_size(stderr_file, width, height);
+  if (!files.standard_errors.empty()) {
+    const ColorImage errors = colors_of_size(files.standard_errors, width, height);
     for (std::size_t k = 0; k < foreign.image.pixels.size(); ++k) {
       const double l = luminance_at(errors.rgb, k);
       foreign.image.pixels[k].variance = l * l;
     }
-    foreign.noise = fmt::format("of {}", stderr_file.string());
-  } else if (image_format(file) == ImageFormat::exr) {
-    const Image layers = read_exr(file);
-    if (take_layer(layers, "stderr", false, foreign.image))
-      foreign.noise = "of its layer stderr";
-    else if (take_layer(layers, "variance", true, foreign.image))
-      foreign.noise = "of its layer variance";
+    foreign.noise = fmt::format("of {}", files.standard_errors.string());
+  } else if (image_format(files.image) == ImageFormat::exr) {
+    take_noise_of_layers(read_exr(files.image), files.samples_per_pixel, foreign);
   }
   if (!foreign.noise.empty())
     for (MeanMoments& pixel : foreign.image.pixels) set_normal(pixel);
@@ -121,6 +170,8 @@ ForeignImage read_foreign_image(const std::filesystem::path& file, const std::fi
 }
 
 void estimate_noise(ForeignImage& foreign, const MomentImage& reference) {
+  // Where all pixels of a block are rounded the same way, their differences do not show it.
+  constexpr double pixels_rounded_alike = block_side * block_side;
   // Half the squared difference of neighbours' residuals: what both images show alike drops out, what changes
   // slowly too. Pooled over blocks.
   MomentImage& image = foreign.image;
@@ -141,6 +192,7 @@ void estimate_noise(ForeignImage& foreign, const MomentImage& reference) {
         for (int x = left; x < right; ++x) {
           MeanMoments& pixel = image.pixels[std::size_t(y) * std::size_t(image.width) + std::size_t(x)];
           pixel.variance = std::max(count > 0 ? sum / count : 0.0, 1e-8 * pixel.mean * pixel.mean);
+          if (foreign.is_8_bit) pixel.variance += pixels_rounded_alike * rounding_variance_8_bit(pixel.mean);
           set_normal(pixel);
         }
     }

@@ -15,13 +15,20 @@ struct ForeignImage {
   std::vector<char> is_readable;  ///< Of each pixel: neither a NaN nor, in a file of 8 bits, at its white.
   bool is_8_bit = false;
   std::string noise{};  ///< Where the variances come from: "its layer stderr". Empty: not known.
+  std::string hint{};   ///< What would make it known, though the file alone does not.
 };
 
-/// EXR, PNG, JPEG or Radiance HDR. The noise is that of the layer stderr.R, stderr.G, stderr.B (or
-/// variance.*) if the EXR has one, else that of `stderr_file`, an image of standard errors, where named.
-/// Throws InputError for a file that cannot be read, or whose size is not the one asked for.
-ForeignImage read_foreign_image(const std::filesystem::path& file, const std::filesystem::path& stderr_file,
-                                int width, int height);
+struct ForeignFiles {
+  std::filesystem::path image, standard_errors{};  ///< The second may be empty.
+  std::optional<int> samples_per_pixel{};          ///< That the image was rendered with.
+};
+
+/// EXR, PNG, JPEG or Radiance HDR. The noise is that of the image of standard errors where named; else of the
+/// EXR's layer stderr.R, stderr.G, stderr.B, or variance.*; else, with the samples a pixel known, of a layer
+/// that holds the variance of one sample (Variance.*, of pbrt) or its second moment (m2_NAME.*, of Mitsuba's
+/// moment integrator). Throws InputError for a file that cannot be read, or whose size is not the one asked
+/// for.
+ForeignImage read_foreign_image(const ForeignFiles& files, int width, int height);
 
 /// Where its noise is not known: takes what the image differs by from `reference`, pixel beside pixel, beyond
 /// the reference's own noise, for noise, and says so.

@@ -18,7 +18,7 @@ LayerSet scattered_light() {
 }
 
 MomentImage moment_image(const RenderResult& rendered) {
-  MomentImage image{rendered.film.width(), rendered.film.height(), {}};
+  MomentImage image{rendered.film.width(), rendered.film.height(), {}, rendered.replicates};
   image.pixels.reserve(std::size_t(image.width) * std::size_t(image.height));
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)

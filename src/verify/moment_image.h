@@ -13,6 +13,7 @@ namespace etendue {
 struct MomentImage {
   int width = 0, height = 0;
   std::vector<MeanMoments> pixels;
+  int replicates = 16;  ///< That the moments come from; of another renderer's image taken to be so many.
 
   const MeanMoments& at(int x, int y) const {
     return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)];

@@ -1,14 +1,16 @@
 #include "verify/verify.h"
 
 #include "base/hash.h"
-#include "integrator/single_sample.h"
 #include "lint/probe.h"
 #include "stats/significance.h"
+#include "verify/film_cells.h"
+#include "verify/pilot_noise.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tbb/parallel_for.h>
 
 namespace etendue {
@@ -36,6 +38,21 @@ double brightest_light(const Scene& scene) {
   for (const std::int32_t light : scene.geometry.light)
     if (light >= 0) take(scene.lights.radiance<float>(light, true));
   return brightest;
+}
+
+/// The most of a light's radiance that a BSDF sample takes on from a diffuse surface.
+double largest_diffuse_weight(const Scene& scene) {
+  const auto weight_of = [](const auto& material) -> double {
+    if (!material.is_diffuse()) return 0;
+    if (material.has_texture()) return 1;
+    const Colorf weight =
+        material.at(Vec2<float>{0, 0}, true).sample(Vec3<float>{0, 0, 1}, Vec2<float>{0.5f, 0.5f}).weight;
+    return std::max({weight.r, weight.g, weight.b});
+  };
+  double largest = 0;
+  for (std::int32_t m = 0; m < scene.materials.count(); ++m)
+    largest = std::max(largest, std::visit(weight_of, scene.materials[m]));
+  return largest;
 }
 
 /// Replicates that memory allows to be kept.
@@ -71,28 +88,56 @@ void leave_out_unreadable(const ForeignImage* foreign, MomentImage& image) {
     if (!foreign->is_readable[k]) image.pixels[k] = {};
 }
 
+/// Of path integrators all that is seen may have rare hits, as glossy surfaces send light to the others.
+FilmCells film_of(const Scene& scene, const Estimators& estimators) {
+  const bool is_direct = estimators.all.front().integrator.path_rules()->length() == PathLength::one_vertex;
+  std::vector<char> has_rare_hits;
+  for (std::int32_t m = 0; m < scene.materials.count(); ++m)
+    has_rare_hits.push_back(!scene.materials.is_diffuse<float>(m));
+  if (!is_direct && std::ranges::find(has_rare_hits, 1) != has_rare_hits.end())
+    std::ranges::fill(has_rare_hits, 1);
+  const int width = scene.camera.width_px, height = scene.camera.height_px,
+            margin_px = int(std::ceil(scene.filter.radius_px())) + 1;
+  return film_cells(width, height, materials_seen(scene), std::move(has_rare_hits), margin_px);
+}
+
 /// Renders the estimators one after the other.
 class Runs {
  public:
   Runs(const Scene& scene, const Estimators& estimators, const VerifySettings& settings,
        const VerifyProgress& progress, const StopRequest* stop)
-      : scene_(scene),
+      : film(film_of(scene, estimators)),
+        scene_(scene),
         estimators_(estimators.all),
         settings_(settings),
         progress_(progress),
         stop_(stop),
-        materials_(materials_seen(scene)),
         brightest_(brightest_light(scene)),
+        largest_diffuse_weight_(largest_diffuse_weight(scene)),
         start_s_(now_s()) {}
 
+  const FilmCells film;
+
+  /// First of all. Nothing where it was interrupted.
+  bool render_pilots() {
+    for (std::size_t number = 0; number < estimators_.size(); ++number) {
+      PilotNoise pilot = pilot_of(number);
+      if (stop_ && stop_->soon) return false;
+      pilots_.push_back(std::move(pilot));
+    }
+    cell_means_ = median_means(pilots_);
+    for (PilotNoise& pilot : pilots_)
+      set_relative_variances(pilot, film, blocks_along(scene_.camera.width_px), cell_means_);
+    shares_ = shares_of_time(pilots_, film, settings_.seconds);
+    return true;
+  }
+
   /// Nothing where it was interrupted.
-  std::optional<VerifiedEstimator> render(std::size_t number) {
+  std::optional<VerifiedEstimator> render(std::size_t number) const {
     const Estimator& estimator = estimators_[number];
     RenderSettings settings = settings_of(settings_, estimator, number);
-    const double samples = settings_.samples_per_pixel
-                               ? double(*settings_.samples_per_pixel)
-                               : samples_in_time(settings, estimators_.size() - number);
-    if (stop_ && stop_->soon) return std::nullopt;
+    const double samples =
+        settings_.samples_per_pixel ? double(*settings_.samples_per_pixel) : samples_in_time(number);
     const int replicates = replicate_count(scene_, samples);
     const double of_replicate = samples / replicates;
     settings.replicates = replicates;
@@ -102,7 +147,7 @@ class Runs {
     const RenderResult rendered = etendue::render(
         scene_, settings, [&](const RenderProgress& p) { report(number, p.fraction); }, stop_);
     if (rendered.is_interrupted) return std::nullopt;
-    VerifiedEstimator verified = verified_image(estimator, moment_image(rendered), unseen_step(settings));
+    VerifiedEstimator verified = verified_image(estimator, moment_image(rendered));
     verified.samples_per_pixel = settings.samples_per_pixel;
     verified.replicates = replicates;
     verified.seconds = rendered.seconds;
@@ -110,30 +155,87 @@ class Runs {
     return verified;
   }
 
-  VerifiedEstimator verified_image(const Estimator& estimator, MomentImage image, double unseen_step) const {
+  VerifiedEstimator verified_image(const Estimator& estimator, MomentImage image) const {
     leave_out_unreadable(settings_.against, image);
-    VerifiedEstimator verified{
-        .estimator = estimator,
-        .image = compared_image(std::move(image), materials_, scene_.materials.count(), unseen_step)};
+    VerifiedEstimator verified{.estimator = estimator, .image = compared_image(std::move(image), film)};
     const MeanMoments mean = verified.image.whole.scaled(1 / double(verified.image.image.pixels.size()));
     verified.mean = mean.mean;
     verified.standard_error = mean.standard_error();
     return verified;
   }
 
- private:
-  /// What an even share of the time that is left allows, from a pilot of one sample.
-  double samples_in_time(RenderSettings settings, std::size_t estimators_left) const {
-    constexpr double reserve = 0.85;  // For comparing, and for looking at lights.
-    settings.samples_per_pixel = 1;
-    settings.seed = hash64(settings.seed);
-    const double seconds = etendue::render(scene_, settings, {}, stop_).seconds;
-    const double left = reserve * settings_.seconds - (now_s() - start_s_);
-    return std::min(left / double(estimators_left) / std::max(seconds, 1e-6), 1e6);
+  /// What rare events may add. A sample that meets a light by chance adds at most the brightest one. Light
+  /// samples may have met nothing of a light on the horizon, or of a lobe that reflects one, and then do not
+  /// tell how much a hit adds: what other estimators have met does. Where both techniques are weighed there
+  /// are no such hits of a lobe.
+  void raise_steps_of_rare_events(std::vector<VerifiedEstimator>& estimators) const {
+    LeastSteps met;  // Of one light sample.
+    for (const VerifiedEstimator& each : estimators) {
+      if (!each.estimator.integrator.path_rules()->light_samples()) continue;
+      const LeastSteps seen = steps_seen(each.image, film);
+      met.of_lobes = std::max(met.of_lobes, seen.of_lobes * each.samples_per_pixel);
+      met.of_others = std::max(met.of_others, seen.of_others * each.samples_per_pixel);
+    }
+    const double by_chance = brightest_ * largest_diffuse_weight_;
+    for (VerifiedEstimator& each : estimators) {
+      const PathRules& rules = *each.estimator.integrator.path_rules();
+      LeastSteps least = met;
+      if (!rules.light_samples())
+        least = {brightest_, by_chance};
+      else if (rules.needs_both_pdfs())  // No sample adds more than one that meets the light by chance.
+        least = {0, std::min(met.of_others, by_chance)};
+      else if (rules.light_samples()->technique != LightTechnique::area)  // Density at least 1 / (2 pi).
+        least.of_others = std::min(met.of_others, 2 * scene_.lights.count() * by_chance);
+      const double samples = each.samples_per_pixel;
+      raise_steps(each.image, film, {least.of_lobes / samples, least.of_others / samples});
+    }
   }
 
-  double unseen_step(const RenderSettings& settings) const {
-    return settings.integrator.path_rules()->light_samples() ? 0 : brightest_ / settings.samples_per_pixel;
+  const std::vector<double>& cell_means() const { return cell_means_; }
+
+  /// For the comparison of two estimators; that after the last is another renderer's image, whose noise is
+  /// known from elsewhere.
+  std::vector<double> weights(const std::vector<VerifiedEstimator>& estimators, std::size_t a,
+                              std::size_t b) const {
+    const std::vector<double> none(film.cells.size(), 0.0);
+    const auto of = [&](std::size_t k) -> const std::vector<double>& {
+      return estimators[k].is_foreign ? none : pilots_[k].relative_variance;
+    };
+    const auto samples = [&](std::size_t k) { return std::max(1, estimators[k].samples_per_pixel); };
+    return cell_weights(film, cell_means_, of(a), samples(a), of(b), samples(b));
+  }
+
+  double seconds_per_sample(std::size_t number) const { return pilots_[number].seconds_per_sample; }
+  double seconds_left() const { return settings_.seconds - (now_s() - start_s_); }
+
+ private:
+  /// Of as many samples as a hundredth of the time allows, within reason.
+  PilotNoise pilot_of(std::size_t number) const {
+    constexpr int replicates = 4, most_samples = 256;
+    constexpr double share = 0.01;
+    RenderSettings settings = settings_of(settings_, estimators_[number], number);
+    settings.seed = hash64(settings.seed);
+    settings.replicates = replicates;
+    const int most = settings_.samples_per_pixel ? *settings_.samples_per_pixel / 8 : most_samples;
+    for (int samples = replicates;; samples *= 4) {
+      settings.samples_per_pixel = samples;
+      const RenderResult rendered = etendue::render(scene_, settings, {}, stop_);
+      const bool is_last = samples * 4 > most || rendered.seconds * 4 > share * settings_.seconds;
+      if (rendered.is_interrupted) return {};
+      if (is_last)
+        return {.seconds_per_sample = std::max(rendered.seconds / samples, 1e-9),
+                .cells = film.sums(moment_image(rendered)),
+                .samples_per_pixel = samples};
+    }
+  }
+
+  /// What its share of the time that is left allows.
+  double samples_in_time(std::size_t number) const {
+    constexpr double reserve = 0.1;  // For comparing, and for looking at lights.
+    const double of_those_left =
+        shares_[number] / std::accumulate(shares_.begin() + std::ptrdiff_t(number), shares_.end(), 0.0);
+    const double left = seconds_left() - reserve * settings_.seconds;
+    return std::min(left * of_those_left / pilots_[number].seconds_per_sample, 1e6);
   }
 
   void report(std::size_t number, double fraction) const {
@@ -145,31 +247,21 @@ class Runs {
   const VerifySettings& settings_;
   const VerifyProgress& progress_;
   const StopRequest* stop_;
-  std::vector<std::int32_t> materials_;
-  double brightest_, start_s_;
+  double brightest_, largest_diffuse_weight_, start_s_;
+  std::vector<PilotNoise> pilots_;
+  std::vector<double> cell_means_, shares_;
 };
 
-/// Of a lobe that reflects a light, light samples may have met nothing, and then do not tell how much a hit
-/// adds: what another estimator has met does. Where both techniques are weighed there are no such hits.
-void share_steps(std::vector<VerifiedEstimator>& estimators) {
-  double step = 0;  // Of one sample.
-  for (const VerifiedEstimator& each : estimators)
-    if (each.estimator.integrator.path_rules()->light_samples())
-      step = std::max(step, each.image.whole.step() * each.samples_per_pixel);
-  for (VerifiedEstimator& each : estimators) {
-    const PathRules& rules = *each.estimator.integrator.path_rules();
-    if (rules.light_samples() && !rules.needs_both_pdfs())
-      set_unseen_step(each.image, step / each.samples_per_pixel);
-  }
-}
-
-std::vector<VerifiedPair> compare_all(const std::vector<VerifiedEstimator>& estimators, double level) {
+std::vector<VerifiedPair> compare_all(const Runs& runs, const std::vector<VerifiedEstimator>& estimators,
+                                      double level) {
   std::vector<VerifiedPair> pairs;
   for (std::size_t a = 0; a < estimators.size(); ++a)
     for (std::size_t b = a + 1; b < estimators.size(); ++b) pairs.push_back({a, b, {}});
   const double level_of_pair = level / double(std::max<std::size_t>(1, pairs.size()));
   tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
-    pairs[k].comparison = compare(estimators[pairs[k].a].image, estimators[pairs[k].b].image, level_of_pair);
+    const auto [a, b] = std::pair(pairs[k].a, pairs[k].b);
+    pairs[k].comparison = compare(estimators[a].image, estimators[b].image, runs.film, runs.cell_means(),
+                                  runs.weights(estimators, a, b), level_of_pair);
   });
   std::vector<double> p_values;
   for (const VerifiedPair& pair : pairs) p_values.push_back(pair.comparison.p_value);
@@ -199,9 +291,11 @@ void find_odd(VerifyResult& result) {
   }
 }
 
+/// Of our own.
 const VerifiedEstimator& most_precise(const std::vector<VerifiedEstimator>& estimators) {
-  return *std::min_element(estimators.begin(), estimators.end(),
-                           [](const auto& a, const auto& b) { return a.standard_error < b.standard_error; });
+  return *std::min_element(estimators.begin(), estimators.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.is_foreign, a.standard_error) < std::pair(b.is_foreign, b.standard_error);
+  });
 }
 
 /// The other renderer's image as one more estimator, its noise estimated where that is not known.
@@ -209,7 +303,9 @@ void add_foreign(const Runs& runs, const VerifySettings& settings, VerifyResult&
   ForeignImage foreign = *settings.against;
   if (foreign.noise.empty()) estimate_noise(foreign, most_precise(result.estimators).image.image);
   result.foreign_noise = foreign.noise;
-  result.estimators.push_back(runs.verified_image({settings.against_name, {}}, foreign.image, 0));
+  result.foreign_hint = foreign.hint;
+  result.foreign_pixels_left_out = std::ranges::count(foreign.is_readable, 0);
+  result.estimators.push_back(runs.verified_image({settings.against_name, {}}, foreign.image));
   result.estimators.back().is_foreign = true;
 }
 
@@ -224,10 +320,12 @@ VerifiedPair* strongest_pair_of(VerifyResult& result, std::size_t estimator) {
   return strongest;
 }
 
-/// Looks for the lights by which the odd estimators differ; of a few of them, as it takes two renders each.
-void find_lights(const Scene& scene, const VerifySettings& settings, VerifyResult& result,
+/// Looks for the lights by which the odd estimators differ; of a few of them, as it takes two renders each,
+/// and in the time that is left.
+void find_lights(const Scene& scene, const Runs& runs, const VerifySettings& settings, VerifyResult& result,
                  const StopRequest* stop) {
-  constexpr int most_looked_at = 3, replicates = 16, most_samples = 64;
+  constexpr int most_looked_at = 3, replicates = 8, most_samples = 64;
+  constexpr double layers_cost = 2;  // Times a render without.
   int looked_at = 0;
   for (std::size_t k = 0; k < result.estimators.size() && looked_at < most_looked_at; ++k) {
     VerifiedPair* const pair = strongest_pair_of(result, k);
@@ -238,13 +336,19 @@ void find_lights(const Scene& scene, const VerifySettings& settings, VerifyResul
       pair->lights.push_back({0, pair->comparison.ratio, pair->p_value});
       continue;
     }
+    const double of_one = layers_cost * (runs.seconds_per_sample(pair->a) + runs.seconds_per_sample(pair->b)),
+                 in_time = settings.samples_per_pixel
+                               ? std::min(result.estimators[pair->a].samples_per_pixel,
+                                          result.estimators[pair->b].samples_per_pixel) /
+                                     2.0
+                               : runs.seconds_left() / of_one;
+    const int samples = int(std::min<double>(in_time, most_samples)) / replicates * replicates;
+    if (samples == 0 && !settings.samples_per_pixel) continue;
     const auto again = [&](std::size_t number) {
       RenderSettings render = settings_of(settings, result.estimators[number].estimator, number);
       render.seed = hash64(render.seed + 1);
       render.replicates = replicates;
-      render.samples_per_pixel =
-          std::clamp(result.estimators[number].samples_per_pixel / 2, replicates, most_samples) / replicates *
-          replicates;
+      render.samples_per_pixel = std::max(samples, replicates);
       return render;
     };
     pair->lights = light_differences(scene, again(pair->a), again(pair->b), settings.level, stop);
@@ -253,25 +357,12 @@ void find_lights(const Scene& scene, const VerifySettings& settings, VerifyResul
 
 }  // namespace
 
-std::vector<std::int32_t> materials_seen(const Scene& scene) {
-  const Camera& camera = scene.camera;
-  std::vector<std::int32_t> seen(std::size_t(camera.width_px) * std::size_t(camera.height_px));
-  tbb::parallel_for(0, camera.height_px, [&](int y) {
-    for (int x = 0; x < camera.width_px; ++x) {
-      const CameraRay<float> ray = camera.ray(float(x) + 0.5f, float(y) + 0.5f);
-      const Hit<float> hit = closest_hit(scene, {ray.origin, ray.direction}, ray.t_near, ray.t_far);
-      seen[std::size_t(y) * std::size_t(camera.width_px) + std::size_t(x)] =
-          hit.geometry < 0 ? -1 : scene.geometry.material[std::size_t(hit.geometry)];
-    }
-  });
-  return seen;
-}
-
 VerifyResult verify(const Scene& scene, const Estimators& estimators, const VerifySettings& settings,
                     const VerifyProgress& progress, const StopRequest* stop) {
   VerifyResult result{
       .estimators = {}, .left_out = estimators.left_out, .pairs = {}, .level = settings.level};
   Runs runs(scene, estimators, settings, progress, stop);
+  result.is_interrupted = !runs.render_pilots();
   for (std::size_t k = 0; k < estimators.all.size() && !result.is_interrupted; ++k) {
     std::optional<VerifiedEstimator> verified = runs.render(k);
     if (verified)
@@ -279,9 +370,9 @@ VerifyResult verify(const Scene& scene, const Estimators& estimators, const Veri
     else
       result.is_interrupted = true;
   }
-  share_steps(result.estimators);
+  runs.raise_steps_of_rare_events(result.estimators);
   if (settings.against && !result.estimators.empty()) add_foreign(runs, settings, result);
-  result.pairs = compare_all(result.estimators, settings.level);
+  result.pairs = compare_all(runs, result.estimators, settings.level);
   find_odd(result);
   bool differs = false, tells = false;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -299,7 +390,7 @@ VerifyResult verify(const Scene& scene, const Estimators& estimators, const Veri
     result.smallest_difference = std::min(result.smallest_difference, pair.comparison.smallest_difference);
   }
   result.verdict = differs ? Verdict::differ : tells ? Verdict::agree : Verdict::cannot_tell;
-  if (differs && !result.is_interrupted) find_lights(scene, settings, result, stop);
+  if (differs && !result.is_interrupted) find_lights(scene, runs, settings, result, stop);
   if (differs && settings.against && result.estimators.back().is_foreign)
     result.mishap = likely_mishap(*settings.against, most_precise(result.estimators).image.image);
   return result;

@@ -58,9 +58,11 @@ struct VerifyResult {
   double level = 1e-3;
   /// Relative to the image's mean: between the two that tell most, found with probability 0.9.
   double smallest_difference = 0;
-  std::string foreign_noise{};          ///< Where the noise of the other renderer's image is from.
-  std::optional<std::string> mishap{};  ///< What may have been done to it, where it differs.
-  bool is_interrupted = false;          ///< Only the estimators before the stop are there.
+  std::string foreign_noise{};               ///< Where the noise of the other renderer's image is from.
+  std::string foreign_hint{};                ///< How it would be known better; mostly empty.
+  std::int64_t foreign_pixels_left_out = 0;  ///< Not numbers, or white in 8 bits.
+  std::optional<std::string> mishap{};       ///< What may have been done to it, where it differs.
+  bool is_interrupted = false;               ///< Only the estimators before the stop are there.
 };
 
 /// \param fraction of the work done, in [0, 1]
@@ -69,8 +71,5 @@ using VerifyProgress = std::function<void(double fraction)>;
 /// Throws InputError where the settings do not fit the scene.
 VerifyResult verify(const Scene& scene, const Estimators& estimators, const VerifySettings& settings,
                     const VerifyProgress& progress = {}, const StopRequest* stop = nullptr);
-
-/// The material that each pixel shows through its middle, -1 where it shows none; rows from the top.
-std::vector<std::int32_t> materials_seen(const Scene& scene);
 
 }  // namespace etendue

@@ -14,33 +14,33 @@ namespace etendue {
 
 enum class Bug {
   none,
-  no_light_pmf,             // 1 / pmf of the chosen light forgotten
-  pmf_of_another_sampler,   // lights chosen by power or tree, divided by the pmf of uniform
-  number_reused,            // the number that chose the light places the point too, not stretched
-  light_never_chosen,       // the last light
-  tree_blind,               // tree importance 0 where light arrives: on surfaces that lean
-  points_not_uniform,       // denser on one side of the light than the density says
-  area_of_one_triangle,     // of a light of two: its light samples are worth half
-  cosine_twice,             // at the receiver
-  cosine_missing,           // at the receiver
-  geometric_cosine,         // geometric in place of shading normal
-  distance_not_squared,     // 1 / r in place of 1 / r^2
-  factor_2,                 // the light counted twice
-  one_over_pi_missing,      // of light samples
-  no_shadow_ray,            // nothing hides lights
-  shadow_ray_too_short,     // ends half-way
-  shadow_ray_too_long,      // meets the light itself
-  self_shadow,              // starts below the surface where light comes in flat
-  samples_not_averaged,     // several light samples of a vertex added up
-  technique_density,        // 3 % off for all techniques but area
-  mis_density_of_one_side,  // 5 % off
-  mis_without_pmf,          // weights of met light without the light's pmf
-  mis_light_side_in_full,   // light samples not weighted
-  mis_met_side_in_full,     // met light not weighted
-  mis_heuristics_mixed,     // balance on one side, power on the other
-  bsdf_cosine_missing,      // of BSDF samples
-  bsdf_pdf_of_one_lobe,     // weights with half of the BSDF's density
-  resampling_divided_twice,   // by the number of candidates
+  no_light_pmf,              // 1 / pmf of the chosen light forgotten
+  pmf_of_another_sampler,    // lights chosen by power or tree, divided by the pmf of uniform
+  number_reused,             // the number that chose the light places the point too, not stretched
+  light_never_chosen,        // the last light
+  tree_blind,                // tree importance 0 where light arrives: on surfaces that lean
+  points_not_uniform,        // denser on one side of the light than the density says
+  area_of_one_triangle,      // of a light of two: its light samples are worth half
+  cosine_twice,              // at the receiver
+  cosine_missing,            // at the receiver
+  geometric_cosine,          // geometric in place of shading normal
+  distance_not_squared,      // 1 / r in place of 1 / r^2
+  factor_2,                  // the light counted twice
+  one_over_pi_missing,       // of light samples
+  no_shadow_ray,             // nothing hides lights
+  shadow_ray_too_short,      // ends half-way
+  shadow_ray_too_long,       // meets the light itself
+  self_shadow,               // starts below the surface where light comes in flat
+  samples_not_averaged,      // several light samples of a vertex added up
+  technique_density,         // 3 % off for all techniques but area
+  mis_density_of_one_side,   // 5 % off
+  mis_without_pmf,           // weights of met light without the light's pmf
+  mis_light_side_in_full,    // light samples not weighted
+  mis_met_side_in_full,      // met light not weighted
+  mis_heuristics_mixed,      // balance on one side, power on the other
+  bsdf_cosine_missing,       // of BSDF samples
+  bsdf_pdf_of_one_lobe,      // weights with half of the BSDF's density
+  resampling_divided_twice,  // by the number of candidates
 };
 
 namespace {
