@@ -16,7 +16,7 @@ import mathutils
 import numpy as np
 
 from renderers import read_exr
-from shapes import Diffuse, Mesh, Rectangle, Sphere
+from shapes import Diffuse, Mesh, Rectangle, Sphere, Texels
 
 SPHERE_SEGMENTS = 256
 WARM_UPS = 4  # of one sample a pixel, of which the first is not counted
@@ -83,6 +83,9 @@ def add(scene, thing):
         shape = round_mesh(shape)
     mesh.from_pydata(shape.vertices.tolist(), [], shape.faces.tolist())
     mesh.polygons.foreach_set("use_smooth", [isinstance(thing.shape, Sphere)] * len(mesh.polygons))
+    if isinstance(thing.radiance, Texels):  # The faces of a rectangle, see above.
+        uvs = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)[shape.faces.ravel()]
+        mesh.uv_layers.new(name="uv").data.foreach_set("uv", uvs.ravel())
     mesh.materials.append(material(thing))
     scene.collection.objects.link(bpy.data.objects.new(thing.name, mesh))
 
@@ -107,8 +110,12 @@ def material(thing):
     output = nodes.new("ShaderNodeOutputMaterial")
     if thing.radiance:  # A lamp is black, and only its front shines.
         shine, geometry, mix = (nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "NewGeometry", "MixShader"))
-        shine.inputs["Strength"].default_value = max(thing.radiance)
-        shine.inputs["Color"].default_value = (*(c / max(thing.radiance) for c in thing.radiance), 1)
+        if isinstance(thing.radiance, Texels):
+            links.new(texture(nodes, thing).outputs["Color"], shine.inputs["Color"])
+            shine.inputs["Strength"].default_value = 1
+        else:
+            shine.inputs["Strength"].default_value = max(thing.radiance)
+            shine.inputs["Color"].default_value = (*(c / max(thing.radiance) for c in thing.radiance), 1)
         links.new(geometry.outputs["Backfacing"], mix.inputs[0])
         links.new(shine.outputs[0], mix.inputs[1])
         links.new(mix.outputs[0], output.inputs["Surface"])
@@ -126,6 +133,17 @@ def material(thing):
         node.inputs["Roughness"].default_value = thing.material.alpha ** 0.5
     links.new(node.outputs[0], output.inputs["Surface"])
     return made
+
+
+def texture(nodes, thing):
+    colors = thing.radiance.colors
+    image = bpy.data.images.new(thing.name, colors.shape[1], colors.shape[0], float_buffer=True, is_data=True)
+    pixels = np.ones((*colors.shape[:2], 4), np.float32)
+    pixels[..., :3] = colors[::-1]
+    image.pixels.foreach_set(pixels.ravel())
+    node = nodes.new("ShaderNodeTexImage")
+    node.image, node.interpolation, node.extension = image, "Linear", "EXTEND"
+    return node
 
 
 def add_camera(scene, description):

@@ -13,11 +13,14 @@ import drjit as dr
 import mitsuba as mi
 
 mi.set_variant("llvm_ad_rgb")
-dr.set_thread_count(int(sys.argv[1]))
+THREADS = int(sys.argv[1])
 
 
 def load(path, setting):
+    # With one thread, loading a texture would wait for a second for ever.
+    dr.set_thread_count(2)
     scene = mi.load_file(path, sampler=setting["sampler"])
+    dr.set_thread_count(THREADS)
     if setting.get("lights") == "uniform":
         params = mi.traverse(scene)
         for key in params.keys():

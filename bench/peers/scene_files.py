@@ -2,17 +2,21 @@
 import pickle
 
 import numpy as np
+import OpenEXR
 
-from shapes import Diffuse, Mesh, Rectangle, Sphere
+from shapes import Diffuse, Mesh, Rectangle, Sphere, Texels
 
 
 def write_scene(scene, folder, size_px, suffix=""):
-    """Writes NAME.etendue.xml, NAME.mitsuba.xml, and NAME.cycles for its worker, and the meshes as PLY; returns the
-    paths of the scenes."""
+    """Writes NAME.etendue.xml, NAME.mitsuba.xml, and NAME.cycles for its worker, the meshes as PLY and the textures as
+    EXR; returns the paths of the scenes."""
     folder.mkdir(parents=True, exist_ok=True)
     for thing in scene.objects:
         if isinstance(thing.shape, Mesh):
             write_ply(thing.shape, folder / mesh_name(scene, thing))
+        if isinstance(thing.radiance, Texels):
+            write_exr(thing.radiance.colors, folder / texels_name(scene, thing))
+            write_exr(thing.radiance.colors[::-1], folder / upside_down_name(scene, thing))
     paths = []
     for renderer, text in (("etendue", etendue_xml), ("mitsuba", mitsuba_xml)):
         paths.append(folder / f"{scene.name}{suffix}.{renderer}.xml")
@@ -24,6 +28,20 @@ def write_scene(scene, folder, size_px, suffix=""):
 
 def mesh_name(scene, thing):
     return f"{scene.name}.{thing.name}.ply"
+
+
+def texels_name(scene, thing):
+    return f"{scene.name}.{thing.name}.exr"
+
+
+def upside_down_name(scene, thing):
+    """For Mitsuba, whose v runs down the picture: it samples by texels where no transform turns them."""
+    return f"{scene.name}.{thing.name}.upside_down.exr"
+
+
+def write_exr(colors, path):
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    OpenEXR.File(header, {"RGB": np.ascontiguousarray(colors, np.float32)}).write(str(path))
 
 
 def write_ply(mesh, path):
@@ -71,7 +89,11 @@ def etendue_xml(scene, size_px):
                          f'<float name="alpha" value="{material.alpha:g}"/>'
                          f'<color name="eta" value="{numbers(material.eta)}"/>'
                          f'<color name="k" value="{numbers(material.k)}"/></bsdf>')
-        if thing.radiance:
+        if isinstance(thing.radiance, Texels):
+            lines.append('\t\t<emitter type="area"><texture type="imagetexture" name="radiance">'
+                         f'<string name="filename" value="{texels_name(scene, thing)}"/>'
+                         '<string name="wrap" value="clamp"/></texture></emitter>')
+        elif thing.radiance:
             lines.append(f'\t\t<emitter type="area"><color name="radiance" value="{numbers(thing.radiance)}"/></emitter>')
         lines.append("\t</shape>")
     return "\n".join(lines + ["</scene>", ""])
@@ -102,7 +124,13 @@ def mitsuba_xml(scene, size_px):
                          f'<float name="alpha" value="{material.alpha:g}"/>'
                          f'<rgb name="eta" value="{numbers(material.eta)}"/><rgb name="k" value="{numbers(material.k)}"/>'
                          '</bsdf>')
-        if thing.radiance:
+        if isinstance(thing.radiance, Texels):
+            lines.append('\t\t<emitter type="area"><texture type="bitmap" name="radiance">'
+                         f'<string name="filename" value="{upside_down_name(scene, thing)}"/>'
+                         '<string name="wrap_mode" value="clamp"/><boolean name="raw" value="true"/>'
+                         '</texture>'
+                         f'<float name="sampling_weight" value="{thing.power():.9g}"/></emitter>')
+        elif thing.radiance:
             lines.append(f'\t\t<emitter type="area"><rgb name="radiance" value="{numbers(thing.radiance)}"/>'
                          f'<float name="sampling_weight" value="{thing.power():.9g}"/></emitter>')
         lines.append("\t</shape>")

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from shapes import (BLACK, Camera, Diffuse, Mesh, Rectangle, RoughMetal, Scene, Sphere, block, ceiling_lamp, floor,
-                    grid_mesh, join)
+from shapes import (BLACK, Camera, Diffuse, Mesh, Rectangle, RoughMetal, Scene, Sphere, Texels, block, ceiling_lamp,
+                    floor, grid_mesh, join)
 
 WHITE, RED, GREEN = Diffuse((0.73, 0.73, 0.73)), Diffuse((0.63, 0.06, 0.05)), Diffuse((0.14, 0.45, 0.09))
 BLUE, SAND = Diffuse((0.2, 0.35, 0.6)), Diffuse((0.6, 0.5, 0.38))
@@ -236,6 +236,23 @@ def wall_light():
     return scene
 
 
+def textured_emitter():
+    """Like a wall of screens: a dim picture, few bright windows, one spot a thousand times as bright."""
+    random = np.random.default_rng(6)
+    y, x = np.mgrid[0:96, 0:160]
+    colors = 0.4 + 0.3 * np.stack([np.sin(x / 9), np.cos(y / 7), np.sin((x + y) / 13)], -1)
+    for _ in range(12):
+        left, top = random.integers(0, 150), random.integers(0, 88)
+        colors[top:top + 6, left:left + 8] = random.uniform(4, 30, 3)
+    colors[40:60, 20:50] = 0
+    colors[70, 120] = (4000, 3200, 2400)
+    scene = Scene("textured_emitter", "a picture of 160 x 96 texels that shines, one of them most, over a floor with five "
+                  "things", STAND_CAMERA)
+    stand(scene)
+    scene.add("screen", Rectangle((0, 2.2, -0.4), (1.2, 0, 0), (0, 0, 0.72)), BLACK, Texels(colors))
+    return scene
+
+
 SCENES = {
     "box": box,
     "plates": plates,
@@ -248,6 +265,7 @@ SCENES = {
     "sliver_light": sliver_light,
     "wall_light": wall_light,
     "glossy_floor": glossy_floor,
+    "textured_emitter": textured_emitter,
 }
 
 

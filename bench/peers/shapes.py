@@ -25,6 +25,15 @@ class RoughMetal:
 BLACK = Diffuse((0.0, 0.0, 0.0))
 
 
+@dataclass(frozen=True, eq=False)
+class Texels:
+    """Radiance over a rectangle, bilinear between the middles of texels, and beyond the outermost as theirs."""
+    colors: np.ndarray  # float, rows from the top x columns x 3
+
+    def mean(self):
+        return self.colors.mean(axis=(0, 1))
+
+
 @dataclass(frozen=True)
 class Rectangle:
     """The points center + s half_u + t half_v for s, t from -1 to 1; faces half_u x half_v."""
@@ -68,12 +77,13 @@ class Object:
     name: str
     shape: object
     material: object = Diffuse()
-    radiance: tuple = None  # None: no light
+    radiance: object = None  # None: no light; Texels, of a Rectangle only; else a colour
 
     def power(self):
         """Luminance of the power that the front side sends out, in W."""
         weights = (0.212671, 0.715160, 0.072169)
-        return float(np.dot(weights, self.radiance)) * np.pi * self.shape.area()
+        radiance = self.radiance.mean() if isinstance(self.radiance, Texels) else self.radiance
+        return float(np.dot(weights, radiance)) * np.pi * self.shape.area()
 
 
 @dataclass(frozen=True)

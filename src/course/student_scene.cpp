@@ -165,7 +165,11 @@ StudentScene::StudentScene(const etendue::Scene& scene, const ScenePlaces& place
     meshes_.push_back(&mesh);
     const std::int32_t light = geometry.light[row];
     if (light < 0) continue;
-    mesh.shine(parts_->luminaires.emplace_back(mesh, id, scene.lights.radiance<float>(light, true),
+    if (scene.lights.is_textured(light))
+      throw InputError(places.lights[std::size_t(light)].where,
+                       "the radiance of this light is a texture, which luminaires of the course kit have not",
+                       "give it one radiance");
+    mesh.shine(parts_->luminaires.emplace_back(mesh, id, scene.lights.largest_radiance(light),
                                                scene.lights.is_twosided<float>(light, true)));
     luminaires_.push_back(&parts_->luminaires.back());
   }

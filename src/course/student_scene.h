@@ -15,7 +15,7 @@ namespace etendue {
 /// surfaces are not among them. What is asked of it and of its parts is noted (course/calls.h).
 class StudentScene final : public nori::Scene {
  public:
-  /// `scene` must outlive it and stay where it is.
+  /// `scene` must outlive it and stay where it is. Throws InputError for a light whose radiance is a texture.
   StudentScene(const etendue::Scene& scene, const ScenePlaces& places);
   ~StudentScene() override;
 

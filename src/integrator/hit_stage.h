@@ -69,20 +69,21 @@ template <class F>
     ng = select(is_turned, -ng, ng);
     const Mask<F> is_front = mask_and(is_light, mask_or(is_turned, cos_theta_ray < F(0)));
     if (!any(is_front)) continue;
+    const Vec3<F> position = ray.origin + ray.direction * hit.t;
     const F weight = weight_at_hit<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
       const LightTechnique technique = rules.light_samples()->technique;
       const Int<F> facet = light_sampler.chooses_facets() || technique != LightTechnique::area
-                               ? scene.lights.facet_at<F>(light, hit.primitive, is_front)
+                               ? scene.lights.facet_at<F>(light, hit.primitive, position, is_front)
                                : Int<F>(whole_light);
       const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), facet);
-      const LightHit<F> met{ray.origin + ray.direction * hit.t, ng,       ray.direction, facet,
-                            light_sampler.chooses_facets(),     technique};
+      const LightHit<F> met{position, ng, ray.direction, facet, light_sampler.chooses_facets(), technique};
       return scene.lights.pdf_solid_angle<F>(light, pmf, receiver, met, is_front);
     });
-    add_contribution<F>(
-        block, i, is_front,
-        load_lanes<F>(path.throughput, i) * scene.lights.radiance<F>(light, is_front) * weight,
-        {light, Technique::bsdf, vertex});
+    const Color<F> radiance = scene.lights.radiance<F>(light, is_front, [&](const Mask<F>& lanes) {
+      return surface_uv<F>(scene.geometry, hit.geometry, hit.primitive, hit.barycentric, ng, lanes);
+    });
+    add_contribution<F>(block, i, is_front, load_lanes<F>(path.throughput, i) * radiance * weight,
+                        {light, Technique::bsdf, vertex});
   }
   block.clock.finish(Stage::emission);
 }

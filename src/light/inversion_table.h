@@ -19,6 +19,10 @@ inline constexpr std::int32_t inversion_whole = 1 << 30;
 /// weights are. Weights must be finite and not negative.
 void append_cumulative_shares(std::span<const double> weights, std::vector<std::int32_t>& shares);
 
+/// The same, but none of a positive weight is 0, however small it is among the others; all alike where all
+/// weights are 0.
+void append_positive_shares(std::vector<double> weights, std::vector<std::int32_t>& shares);
+
 template <class F>
 struct InversionSample {
   Int<F> index;
@@ -26,17 +30,18 @@ struct InversionSample {
 };
 
 /// Chooses one of `count` entries whose shares begin at shares[first]: the last that begins at or before u.
+/// \param most no lane has more
 template <class F>
-InversionSample<F> sample_by_inversion(const std::int32_t* shares, const Int<F>& first, std::int32_t count,
-                                       const UInt<F>& u) {
+InversionSample<F> sample_by_inversion(const std::int32_t* shares, const Int<F>& first, const Int<F>& count,
+                                       std::int32_t most, const UInt<F>& u) {
   using I = Int<F>;
   const I wanted = as_int(u >> 2);
   I index(0);
   std::int32_t step = 1;
-  while (step < count) step *= 2;
+  while (step < most) step *= 2;
   while ((step /= 2) > 0) {
     const I probe = index + I(step);
-    const Mask<F> is_inside = less(probe, I(count));
+    const Mask<F> is_inside = less(probe, count);
     const I begin = gather(shares, first + select(is_inside, probe, I(0)));
     index = select(mask_and(is_inside, mask_not(less(wanted, begin))), probe, index);
   }
@@ -44,6 +49,13 @@ InversionSample<F> sample_by_inversion(const std::int32_t* shares, const Int<F>&
   const F below = (to_float(as_int(u & UInt<F>(3u))) + F(0.5f)) * F(0.25f);
   const F u_left = (to_float(wanted - begin) + below) / to_float(end - begin);
   return {index, min(u_left, F(0x1.fffffep-1f))};
+}
+
+/// The same number of entries in every lane.
+template <class F>
+InversionSample<F> sample_by_inversion(const std::int32_t* shares, const Int<F>& first, std::int32_t count,
+                                       const UInt<F>& u) {
+  return sample_by_inversion<F>(shares, first, Int<F>(count), count, u);
 }
 
 /// The probability of entry `index`, out of 1.

@@ -63,7 +63,7 @@ class Lights : public LightProperties {
     F pdf(0);
     for_each_kind<F>(light, m, [&](const auto& table, const Int<F>& row, const Mask<F>& lanes) {
       if constexpr (SurfaceLightTable<std::remove_cvref_t<decltype(table)>>)
-        pdf = select(lanes, table.template pdf_solid_angle<F>(row, pmf, receiver, hit), pdf);
+        pdf = select(lanes, table.template pdf_solid_angle<F>(row, pmf, receiver, hit.of(lanes)), pdf);
     });
     return pdf;
   }

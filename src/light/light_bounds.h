@@ -3,6 +3,8 @@
 
 #include "geometry/box.h"
 
+#include <span>
+
 namespace etendue {
 
 /// Conservative: all of the light lies in the box, all its normals in the cone, and from a place with the
@@ -14,5 +16,8 @@ struct LightBounds {
   float cos_normals;   ///< Of the cone's half angle; -1: every direction.
   float cos_emission;  ///< 0 for surfaces, which shine up to a right angle.
 };
+
+/// Of flat parts in the box. \param across each of them, with lengths in proportion to their areas
+LightBounds bounds_of(const Box& box, std::span<const Vec3<double>> across);
 
 }  // namespace etendue

@@ -26,6 +26,12 @@ std::optional<LightBounds> LightProperties::bounds(std::int32_t light) const {
   return seen_from_its_sides(light, bounds);
 }
 
+Colorf LightProperties::largest_radiance(std::int32_t light) const {
+  const Colorf strength = emissions_.strength(light);
+  if (!is_textured(light)) return strength;
+  return strength * float(table<TexturedLights>().largest_luminance(row_[light]));
+}
+
 std::int32_t LightProperties::facet_count(std::int32_t light) const {
   std::int32_t count = 1;
   with_table(kind_[light], [&](const auto& table) {
@@ -39,7 +45,7 @@ double LightProperties::facet_power(std::int32_t light, std::int32_t facet) cons
   double share = 1;
   with_table(kind_[light], [&](const auto& table) {
     if constexpr (FacetLightTable<std::remove_cvref_t<decltype(table)>>)
-      share = table.facet_area_share(row_[light], facet);
+      share = table.facet_power_share(row_[light], facet);
   });
   return power(light) * share;
 }

@@ -38,6 +38,13 @@ struct LightHit {
   Int<F> facet;  ///< Of the light; whole_light where samples neither choose facets nor look at their shape.
   bool is_facet_chosen = false;                     ///< By the samples' pmf.
   LightTechnique technique = LightTechnique::area;  ///< Of the samples.
+
+  /// For a table that has only the lights of these lanes.
+  LightHit of(const Mask<F>& lanes) const {
+    LightHit hit = *this;
+    hit.facet = select(lanes, facet, Int<F>(0));
+    return hit;
+  }
 };
 
 template <class F>

@@ -46,16 +46,16 @@ concept SurfaceLightTable = AnyLightTable<Table> && Table::place == LightPlace::
                               } -> std::same_as<float>;
                             };
 
-/// facet_count(row), facet_area_share(row, facet) of the whole, facet_bounds(row, facet), and facet_at(row,
-/// primitive): the facet that a ray has hit.
+/// facet_count(row), facet_power_share(row, facet) of the whole, facet_bounds(row, facet), and facet_at(row,
+/// primitive, position): the facet that a ray has hit.
 template <class Table>
-concept FacetLightTable =
-    SurfaceLightTable<Table> && requires(const Table& table, std::int32_t row, std::int32_t facet) {
-      { table.facet_count(row) } -> std::same_as<std::int32_t>;
-      { table.facet_area_share(row, facet) } -> std::same_as<double>;
-      { table.facet_bounds(row, facet) } -> std::same_as<LightBounds>;
-      { table.template facet_at<float>(row, facet) } -> std::same_as<std::int32_t>;
-    };
+concept FacetLightTable = SurfaceLightTable<Table> && requires(const Table& table, const Vec3f& position,
+                                                               std::int32_t row, std::int32_t facet) {
+  { table.facet_count(row) } -> std::same_as<std::int32_t>;
+  { table.facet_power_share(row, facet) } -> std::same_as<double>;
+  { table.facet_bounds(row, facet) } -> std::same_as<LightBounds>;
+  { table.template facet_at<float>(row, facet, position) } -> std::same_as<std::int32_t>;
+};
 
 /// radiance(row, direction, lanes): what a ray that leaves the scene meets, per unit of strength.
 /// pdf_solid_angle(row, direction, lanes): the density (1/sr) with which `sample`, asked with pmf 1, gives

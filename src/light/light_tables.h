@@ -12,6 +12,7 @@
 #include "light/rectangle_light.h"
 #include "light/sphere_light.h"
 #include "light/spot_light.h"
+#include "light/textured_light_sampling.h"
 
 #include <cstdint>
 #include <tuple>
@@ -22,7 +23,7 @@ namespace etendue {
 
 /// All kinds.
 using LightKinds = std::tuple<MeshLights, RectangleLights, SphereLights, DiskLights, PointLights, SpotLights,
-                              DirectionalLights, DistantDiskLights, EnvmapLights>;
+                              DirectionalLights, DistantDiskLights, EnvmapLights, TexturedLights>;
 inline constexpr std::size_t light_kind_count = std::tuple_size_v<LightKinds>;
 
 /// Light tables by their number among the kinds.

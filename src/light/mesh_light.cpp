@@ -1,9 +1,7 @@
 #include "light/mesh_light.h"
 
 #include "base/alias_table.h"
-
-#include <algorithm>
-#include <array>
+#include "light/light_pieces.h"
 
 namespace etendue {
 
@@ -13,64 +11,6 @@ namespace {
 bool has_thick_box(const Vec3f& edge_1, const Vec3f& edge_2) {
   return (edge_1.x != 0 || edge_2.x != 0) && (edge_1.y != 0 || edge_2.y != 0) &&
          (edge_1.z != 0 || edge_2.z != 0);
-}
-
-/// Of triangles with these vectors across them, whose lengths are twice their areas.
-LightBounds bounds_of(const Box& box, const std::vector<Vec3<double>>& across) {
-  Vec3<double> sum{0, 0, 0};
-  for (const Vec3<double>& a : across) sum = sum + a;
-  const double size = length(sum);
-  if (!(size > 0)) return {box, {0, 0, 1}, -1, 0};
-  const Vec3<double> axis = sum * (1 / size);
-  double cos_normals = 1;
-  for (const Vec3<double>& a : across) cos_normals = std::min(cos_normals, dot(a, axis) / length(a));
-  // Rounded to a wider cone.
-  return {box, {float(axis.x), float(axis.y), float(axis.z)}, std::max(float(cos_normals) - 1e-6f, -1.0f), 0};
-}
-
-/// The cell of a 4x4 grid over the two longest sides of the mesh's box that holds a triangle's centre, in
-/// Morton order: where a light has many triangles, these are its pieces.
-class PieceGrid {
- public:
-  explicit PieceGrid(const std::vector<Vec3f>& centers) {
-    Vec3f low = centers.front(), high = low;
-    for (const Vec3f& c : centers) {
-      low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
-      high = {std::max(high.x, c.x), std::max(high.y, c.y), std::max(high.z, c.z)};
-    }
-    low_ = {low.x, low.y, low.z};
-    size_ = {high.x - low.x, high.y - low.y, high.z - low.z};
-    const auto shortest = std::min_element(size_.begin(), size_.end()) - size_.begin();
-    first_axis_ = shortest == 0 ? 1 : 0;
-    second_axis_ = shortest == 2 ? 1 : 2;
-  }
-
-  std::int32_t piece(const Vec3f& center) const {
-    const std::array c{center.x, center.y, center.z};
-    const auto cell = [&](std::size_t axis) {
-      return size_[axis] > 0 ? std::min(std::int32_t(4 * (c[axis] - low_[axis]) / size_[axis]), 3) : 0;
-    };
-    const std::int32_t x = cell(first_axis_), y = cell(second_axis_);
-    return (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
-  }
-
- private:
-  std::array<float, 3> low_{}, size_{};
-  std::size_t first_axis_, second_axis_;
-};
-
-/// Of each part of a light, by the places of their centres: the first in the low byte, their number above.
-std::vector<std::int32_t> pieces_of(const std::vector<Vec3f>& centers) {
-  const PieceGrid grid(centers);
-  const std::size_t count = centers.size();
-  std::vector<std::int32_t> pieces;
-  for (std::size_t k = 0; k < count; ++k) {
-    // Of a light with few parts, each has several pieces.
-    const auto begin = std::int32_t(k * light_pieces / count),
-               end = std::int32_t((k + 1) * light_pieces / count);
-    pieces.push_back(count >= light_pieces ? grid.piece(centers[k]) | 1 << 8 : begin | (end - begin) << 8);
-  }
-  return pieces;
 }
 
 }  // namespace

@@ -67,12 +67,12 @@ class MeshLights {
 
   // Facets are convex polygons that flat parts of the mesh make.
   std::int32_t facet_count(std::int32_t row) const { return facet_count_[row]; }
-  double facet_area_share(std::int32_t row, std::int32_t facet) const {
+  double facet_power_share(std::int32_t row, std::int32_t facet) const {
     return polygons_.area(first_facet_[row] + facet) * pdf_area_[row];
   }
   LightBounds facet_bounds(std::int32_t row, std::int32_t facet) const;
   template <class F>
-  Int<F> facet_at(const Int<F>& row, const Int<F>& primitive) const {
+  Int<F> facet_at(const Int<F>& row, const Int<F>& primitive, const Vec3<F>& /*position*/) const {
     return gather(facet_of_triangle_.data(), first_triangle_.at(row) + primitive);
   }
 

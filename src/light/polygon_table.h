@@ -105,6 +105,11 @@ class PolygonTable {
       box.include(record.apex + further[k - 3].from_apex);
     return box;
   }
+  /// The first corner (m) and the area (m^2).
+  template <class F>
+  std::array<F, 4> apex_and_area(const Int<F>& row) const {
+    return gather_four(&records_.data()->apex.x, row * Int<F>(record_words));
+  }
   template <class F>
   F area_at(const Int<F>& row) const {
     return gather(&records_.data()->area, row * Int<F>(record_words));

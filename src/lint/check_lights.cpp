@@ -185,7 +185,7 @@ class LightCheck {
 
   void check(std::int32_t light) {
     const Scene& scene = context_.scene;
-    if (!(luminance(scene.lights.radiance<float>(light, true)) > 0))
+    if (!(luminance(scene.lights.largest_radiance(light)) > 0))
       return add("light-black", light, "shines with 0: it adds nothing", "give it a radiance, or remove it");
     const std::int32_t shape = shapes_[std::size_t(light)];
     const bool is_dirac = shape < 0 && scene.lights.bounds(light).has_value();

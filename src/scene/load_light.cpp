@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
+#include <limits>
 #include <utility>
+#include <variant>
 
 namespace etendue {
 
@@ -13,7 +15,8 @@ const Plugin area_plugin{
     "light",
     std::string(area_light_name),
     "The shape shines from its front side, alike in all directions.",
-    {{"radiance", Parameter::Type::color, "1", "W/(m^2 sr)", "Emitted radiance"},
+    {{"radiance", Parameter::Type::color, "1", "W/(m^2 sr)", "Emitted radiance", false, true},
+     {"scale", Parameter::Type::real, "1", "", "Factor of the radiance"},
      {"twosided", Parameter::Type::boolean, "false", "", "Shines from its back side too"}},
     {}};
 
@@ -76,9 +79,22 @@ const std::vector<Plugin>& light_plugins() {
   return plugins;
 }
 
-AreaLight make_area_light(const Object& description, std::vector<UnreadKey>& unread) {
+AreaLight make_area_light(const Object& description, TextureFiles& textures, std::vector<UnreadKey>& unread) {
   const Parameters parameters(description, area_plugin, unread);
-  return {nonnegative_color(parameters, "radiance"), parameters.boolean("twosided")};
+  const double scale = parameters.real("scale");
+  if (!(scale >= 0 && scale <= std::numeric_limits<float>::max()))
+    throw InputError(parameters.location("scale"),
+                     fmt::format("'scale' is {}; it must be finite and not negative", scale));
+  AreaLight light;
+  light.is_twosided = parameters.boolean("twosided");
+  const ColorTexture radiance = read_color_texture(parameters, "radiance", textures, unread);
+  if (const Colorf* color = std::get_if<Colorf>(&radiance)) {
+    light.strength = *color * float(scale);
+  } else {
+    light.strength = Colorf{1, 1, 1} * float(scale);
+    light.texture = {radiance, parameters.texture("radiance")->location};
+  }
+  return light;
 }
 
 void add_light(const Object& description, const std::filesystem::path& directory, Lights& lights,

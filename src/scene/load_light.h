@@ -3,8 +3,10 @@
 
 #include "light/light.h"
 #include "scenefile/parameters.h"
+#include "texture/texture.h"
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -18,12 +20,17 @@ const std::vector<Plugin>& light_plugins();
 inline constexpr std::string_view area_light_name = "area";
 
 struct AreaLight {
-  Colorf radiance;   ///< W/(m^2 sr)
-  bool is_twosided;  ///< Whether the back side shines too.
+  struct Texture {
+    ColorTexture radiance;
+    Location where;  ///< In the file.
+  };
+  Colorf strength;  ///< W/(m^2 sr): the radiance, or the factor of the texture.
+  std::optional<Texture> texture;
+  bool is_twosided = false;  ///< Whether the back side shines too.
 };
 
-/// Throws InputError for a negative radiance.
-AreaLight make_area_light(const Object& description, std::vector<UnreadKey>& unread);
+/// Throws InputError for a negative radiance or scale, and for a texture that cannot be read.
+AreaLight make_area_light(const Object& description, TextureFiles& textures, std::vector<UnreadKey>& unread);
 
 /// Adds a light that is no area light; where it stands in the file makes no difference. Throws InputError for
 /// an unknown kind, a parameter out of range, an image that cannot be read or used.

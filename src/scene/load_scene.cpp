@@ -190,12 +190,9 @@ class Loader {
       }
     }
     SurfaceIds ids{.material = material_id(bsdf, object)};
-    std::optional<Colorf> radiance;
-    bool is_twosided = false;
+    std::optional<AreaLight> area;
     if (light && light->type == area_light_name) {
-      const AreaLight area = make_area_light(*light, unread_);
-      radiance = area.radiance;
-      is_twosided = area.is_twosided;
+      area = make_area_light(*light, textures_, unread_);
       ids.light = lights_.count();
     } else if (light) {
       add_light(*light, description_.directory, lights_, unread_);
@@ -203,9 +200,9 @@ class Loader {
     }
     const bool is_lifted = std::find(settings_.lifted.begin(), settings_.lifted.end(), geometry_.count()) !=
                            settings_.lifted.end();
-    add_shape_geometry(object, description_.directory, ids, radiance, is_lifted ? settings_.lift : 0, meshes_,
+    add_shape_geometry(object, description_.directory, ids, area, is_lifted ? settings_.lift : 0, meshes_,
                        geometry_, lights_, unread_, warnings_);
-    if (is_twosided) lights_.set_twosided(ids.light);
+    if (area && area->is_twosided) lights_.set_twosided(ids.light);
     note_shapes(object);
     if (light) note_light(*light);
     if (has_texture(materials_[std::size_t(ids.material)]) && geometry_.triangles.back() > 0 &&

@@ -110,6 +110,13 @@ Sphere make_sphere(const Parameters& parameters) {
   return sphere;
 }
 
+void check_untextured(const Object& shape, const AreaLight& light) {
+  if (light.texture)
+    throw InputError(light.texture->where,
+                     fmt::format("the radiance of a {} cannot be a texture", shape.type),
+                     "take a rectangle, or a mesh with texture coordinates");
+}
+
 /// Moves a mesh along its front: each vertex along the mean normal of the triangles around it.
 void lift_mesh(Mesh& mesh, float lift) {
   std::vector<Vec3<double>> across(mesh.positions.size(), {0, 0, 0});
@@ -137,7 +144,7 @@ const std::vector<Plugin>& shape_plugins() {
 }
 
 void add_shape_geometry(const Object& object, const std::filesystem::path& directory, SurfaceIds ids,
-                        const std::optional<Colorf>& radiance, float lift, MeshFiles& meshes,
+                        const std::optional<AreaLight>& light, float lift, MeshFiles& meshes,
                         Geometry& geometry, Lights& lights, std::vector<UnreadKey>& unread,
                         std::vector<std::string>& warnings) {
   const std::string numbered = fmt::format("{} {}", object.type, geometry.count() + 1);
@@ -160,14 +167,23 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
                                ? fmt::format("1 triangle of '{}' has no area and is left out", name)
                                : fmt::format("{} triangles of '{}' have no area and are left out",
                                              mesh.dropped_triangles, name)));
-    if (const std::size_t repeated = radiance ? remove_repeated_triangles(mesh) : 0; repeated > 0)
+    if (const std::size_t repeated = light ? remove_repeated_triangles(mesh) : 0; repeated > 0)
       warnings.push_back(format_message(
           object.location,
           fmt::format("{} triangle{} of the light '{}' {} there more than once; one of each shines", repeated,
                       repeated == 1 ? "" : "s", name, repeated == 1 ? "is" : "are")));
     if (lift > 0) lift_mesh(mesh, lift);
     const std::int32_t id = geometry.add_mesh(mesh, ids);
-    if (radiance) lights.add<MeshLights>(*radiance, name, geometry, id);
+    if (light && light->texture) {
+      if (mesh.uvs.empty())
+        throw InputError(
+            light->texture->where,
+            fmt::format("the radiance of '{}' is a texture, but its mesh has no texture coordinates", name),
+            "write them into the mesh file (vt of an OBJ), or take a rectangle");
+      lights.add<TexturedLights>(light->strength, name, geometry, id, light->texture->radiance);
+    } else if (light) {
+      lights.add<MeshLights>(light->strength, name, geometry, id);
+    }
   } else if (object.type == sphere_plugin.name) {
     const Parameters parameters(object, sphere_plugin, unread);
     Sphere sphere = make_sphere(parameters);
@@ -177,7 +193,8 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
       throw InputError(parameters.location("uOffset"),
                        fmt::format("'uOffset' is {}; it must be from 0 to below 1", u_offset));
     geometry.add_sphere(sphere, ids, float(u_offset));
-    if (radiance) lights.add<SphereLights>(*radiance, label(object, numbered), sphere);
+    if (light) check_untextured(object, *light);
+    if (light) lights.add<SphereLights>(light->strength, label(object, numbered), sphere);
   } else if (object.type == rectangle_plugin.name) {
     const Parameters parameters(object, rectangle_plugin, unread);
     const Transform transform = world_from_object(parameters);
@@ -186,12 +203,15 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     const Vec3f &corner = mesh.positions[0], along_x = mesh.positions[1] - corner,
                 along_y = mesh.positions[3] - corner;
     check_extent(object, corner, along_x, along_y);
-    geometry.add_mesh(mesh, ids);
-    if (radiance) {
+    const std::int32_t id = geometry.add_mesh(mesh, ids);
+    if (light && light->texture) {
+      lights.add<TexturedLights>(light->strength, label(object, numbered), geometry, id,
+                                 light->texture->radiance);
+    } else if (light) {
       // The front stays in front under a mirroring transform, as for the mesh.
       const bool is_mirrored = determinant(transform) < 0;
-      lights.add<RectangleLights>(*radiance, label(object, numbered), corner, is_mirrored ? along_y : along_x,
-                                  is_mirrored ? along_x : along_y);
+      lights.add<RectangleLights>(light->strength, label(object, numbered), corner,
+                                  is_mirrored ? along_y : along_x, is_mirrored ? along_x : along_y);
     }
   } else if (object.type == disk_plugin.name) {
     const Parameters parameters(object, disk_plugin, unread);
@@ -201,7 +221,8 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     check_extent(object, disk.center, (disk.center + disk.along_x) - disk.center,
                  (disk.center + disk.along_y) - disk.center);
     geometry.add_disk(disk, ids);
-    if (radiance) lights.add<DiskLights>(*radiance, label(object, numbered), disk);
+    if (light) check_untextured(object, *light);
+    if (light) lights.add<DiskLights>(light->strength, label(object, numbered), disk);
   } else {
     throw unknown_plugin(object, shape_plugins());
   }

@@ -2,9 +2,11 @@
 
 #include "texture/color_image.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace etendue {
 namespace {
@@ -25,7 +27,25 @@ T choice(const Parameters& parameters, const char* key,
                    known_names(name, known));
 }
 
+/// The first of the texels over which [low, high] (in texels) lies, and how many of them differ.
+std::pair<double, int> texels_around(double low, double high, int size) {
+  const double first = std::floor(low - 1), count = std::floor(high + 1) - first + 1;
+  return {first, int(std::min(count, 2.0 * size))};
+}
+
 }  // namespace
+
+double ImageTexture::largest_luminance(const Vec2<double>& low, const Vec2<double>& high) const {
+  const auto [left, columns] = texels_around(low.x * width, high.x * width, width);
+  const auto [bottom, rows] = texels_around(low.y * height, high.y * height, height);
+  double largest = 0;
+  for (int j = 0; j < rows; ++j) {
+    const float y = wrapped(float(bottom + j), height);
+    for (int i = 0; i < columns; ++i)
+      largest = std::max(largest, double(luminance(texel(wrapped(float(left + i), width), y))));
+  }
+  return largest;
+}
 
 const Plugin image_texture_plugin{
     "texture",

@@ -42,6 +42,9 @@ struct ImageTexture {
     return lower * (F(1) - dy) + upper * dy;
   }
 
+  /// At least as great as the luminance anywhere in this box of uv.
+  double largest_luminance(const Vec2<double>& low, const Vec2<double>& high) const;
+
  private:
   /// The index from 0 to size - 1, as an integral float, of the pixel that stands at the integral `x`.
   template <class F>

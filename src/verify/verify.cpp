@@ -36,7 +36,7 @@ double brightest_light(const Scene& scene) {
       if (sample.is_there) take(sample.radiance_over_pdf * sample.pdf_solid_angle);
     }
   for (const std::int32_t light : scene.geometry.light)
-    if (light >= 0) take(scene.lights.radiance<float>(light, true));
+    if (light >= 0) take(scene.lights.largest_radiance(light));
   return brightest;
 }
 

@@ -779,7 +779,11 @@ const char* const light_of_each_kind[] = {
     R"(<luminaire type="distantdisk"><color name="radiance" value="2"/><float name="thetaA" value="40"/>
       </luminaire>)",
     R"(<luminaire type="envmap"><string name="filename" value="map.exr"/><float name="scale" value="2"/>
-      </luminaire>)"};
+      </luminaire>)",
+    R"(<shape type="rectangle"><transform name="toWorld"><rotate axis="1,2,0" angle="50"/>
+      <scale value="0.4,0.7,1"/></transform><luminaire type="area"><texture type="imagetexture" name="radiance">
+      <string name="filename" value="map.exr"/></texture><float name="scale" value="2"/></luminaire>
+      </shape>)"};
 static_assert(std::size(light_of_each_kind) == light_kind_count, "a kind of light is not tested");
 
 LoadedScene scene_of_kind(std::size_t kind) {

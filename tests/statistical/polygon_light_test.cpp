@@ -6,8 +6,8 @@
 // triangles; the back of a polygon is always seen as its front; the frame is not turned there; receivers that
 // scatter from both sides get the cosine's density; a fan's triangles are chosen with wrong shares; hits have
 // the density of another technique, or that without the lobe; u is not stretched back where a sample is by
-// the lobe; a lobe's density has the third power of the length; its x is not turned behind a polygon; the distance
-// of a sample has no bound.
+// the lobe; a lobe's density has the third power of the length; its x is not turned behind a polygon; the
+// distance of a sample has no bound.
 #include "light/light.h"
 #include "polygon_cases.h"
 #include "stats/running.h"
@@ -96,11 +96,11 @@ std::optional<LightHit<float>> hit_of(const Scene& scene, const Receiver<float>&
       const Vec3f side = polygon[(k + 1) % polygon.size()] - polygon[k];
       outside = std::max(outside, -double(dot(cross(side, at - polygon[k]), n)) / length(side));
     }
-    const std::int32_t facet = scene.lights.facet_at<float>(0, std::int32_t(p), true);
+    const std::int32_t facet = scene.lights.facet_at<float>(0, std::int32_t(p), {}, true);
     if (outside < nearest) {
-      if (facet != scene.lights.facet_at<float>(0, primitive, true)) next_facet = nearest;
+      if (facet != scene.lights.facet_at<float>(0, primitive, {}, true)) next_facet = nearest;
       nearest = outside, ng = n, primitive = std::int32_t(p);
-    } else if (facet != scene.lights.facet_at<float>(0, primitive, true)) {
+    } else if (facet != scene.lights.facet_at<float>(0, primitive, {}, true)) {
       next_facet = std::min(next_facet, outside);
     }
   }
@@ -110,7 +110,7 @@ std::optional<LightHit<float>> hit_of(const Scene& scene, const Receiver<float>&
   return LightHit<float>{receiver.position + sample.wi * distance,
                          ng,
                          sample.wi,
-                         scene.lights.facet_at<float>(0, primitive, true),
+                         scene.lights.facet_at<float>(0, primitive, {}, true),
                          is_facet_chosen,
                          technique};
 }

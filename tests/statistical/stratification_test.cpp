@@ -153,7 +153,14 @@ auto light_cases() {
           "envmap",
           narrow_deg,
           {R"(<emitter type="envmap"><string name="filename" value="map.exr"/></emitter>)", {envmap_file()}},
-          {2.1, 4.2, 2.2, 4.6, 2.1, 2.1, 2.2, 1.7, 2.1, 6.8, 1.0}}};
+          {2.1, 4.2, 2.2, 4.6, 2.1, 2.1, 2.2, 1.7, 2.1, 6.8, 1.0}},
+      LightCase{"textured",
+                narrow_deg,
+                {rectangle_xml(center, half_u, half_v,
+                               R"(<emitter type="area"><texture type="imagetexture" name="radiance">
+                                  <string name="filename" value="map.exr"/></texture></emitter>)"),
+                 {envmap_file()}},
+                {4.8, 3.3, 3.5, 4.7, 4.8, 4.8, 3.1, 2.1, 2.5, 850, 0.95}}};
 }
 static_assert(std::tuple_size_v<decltype(light_cases())> == light_kind_count, "each kind needs a case");
 
