@@ -37,6 +37,25 @@ std::optional<BudgetPilot> settle_budget(const RenderOptions& options, const Sce
   return pilot;
 }
 
+/// Nothing where weights are not optimal, or no pilot can tell them.
+std::optional<WeightPilot> settle_weights(const RenderOptions& options, const Scene& scene,
+                                          RenderSettings& settings) {
+  if (!needs_weight_pilot(scene, settings)) {
+    if (heuristic_name(settings.integrator) == "optimal" && !options.is_quiet)
+      say("note: weights 'optimal' are those of 'power' here: {}\n",
+          scene.medium ? "their control variate knows of no medium"
+                       : "the image is too small for a pilot to find their coefficient");
+    return std::nullopt;
+  }
+  const std::optional<WeightPilot> pilot = optimal_alpha_for(scene, settings, &stop_request);
+  if (!pilot) return pilot;
+  settings.integrator = with_alpha(settings.integrator, pilot->alpha);
+  if (!options.is_quiet)
+    say("a pilot of {:.1f} s finds weights that leave {:.0f} % of the variance of 'power'\n", pilot->seconds,
+        100 * pilot->variance_ratio);
+  return pilot;
+}
+
 /// Nothing where a number of samples was asked for.
 std::optional<Pilot> settle_samples(const RenderOptions& options, const Scene& scene,
                                     RenderSettings& settings) {
@@ -84,6 +103,7 @@ std::optional<AllocationPilot> settle_allocation(const RenderOptions& options, c
 Pilots settle_by_pilots(const RenderOptions& options, const Scene& scene, RenderSettings& settings) {
   Pilots pilots;
   pilots.budget = settle_budget(options, scene, settings);
+  pilots.weights = settle_weights(options, scene, settings);
   if (options.replay.empty()) pilots.samples = settle_samples(options, scene, settings);
   if (pilots.samples) pilots.is_interrupted = pilots.samples->is_interrupted;
   if (!pilots.is_interrupted) pilots.allocation = settle_allocation(options, scene, settings);

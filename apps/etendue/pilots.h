@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/light_budget.h"
+#include "render/optimal_weights.h"
 #include "render/pilot.h"
 #include "render_options.h"
 
@@ -15,6 +16,7 @@ std::optional<ErrorGoal> error_goal(const RenderOptions& options);
 /// Those that were rendered.
 struct Pilots {
   std::optional<BudgetPilot> budget;          ///< Of light samples and their candidates.
+  std::optional<WeightPilot> weights;         ///< Of --weights optimal.
   std::optional<Pilot> samples;               ///< Of --error and --time.
   std::optional<AllocationPilot> allocation;  ///< Of --adaptive.
   bool is_interrupted = false;                ///< Then they tell nothing.

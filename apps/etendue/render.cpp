@@ -88,6 +88,7 @@ int run(const RenderOptions& options) {
   if (!options.plugin.empty())
     asked_for = integrator_asked_for();  // it knows the tables of the scene as it is now
   settings.integrator = asked_for;
+  if (compensates_environments(asked_for)) loaded.scene.lights.compensate_environments();
   catch_signals(LaterSignals::hurry);
   const Pilots pilots = settle_by_pilots(options, loaded.scene, settings);
   if (pilots.is_interrupted) {

@@ -91,8 +91,8 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
                   "[path, direct_light: 1 or 4, as a pilot finds; others: 1, or as the keys of the file say]")
       ->check(number);
   command.add_option("--weights", options.heuristic,
-                     "How light samples and BSDF samples share light that both find: balance, power or "
-                     "maximum "
+                     "How light samples and BSDF samples share light that both find: balance, power, "
+                     "maximum, compensated or optimal "
                      "[path, direct_light: power; others: balance; or the file's]");
 }
 

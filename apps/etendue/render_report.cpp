@@ -142,6 +142,10 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   json["candidates"] = rules ? rules->candidates(0) : 0;
   json["glossy_candidates"] = rules ? rules->glossy_candidates(0) : 0;
   if (const auto& pilot = rendering.pilots.budget) json["light_budget"] = stats_of(*pilot);
+  if (const auto& pilot = rendering.pilots.weights)
+    json["optimal_weights"] = {{"pilot_seconds", pilot->seconds},
+                               {"alpha", {pilot->alpha.r, pilot->alpha.g, pilot->alpha.b}},
+                               {"variance_ratio", pilot->variance_ratio}};
   json["sampler"] = sampler_name(loaded.scene.sampler);
   json["spp"] = rendering.samples_per_pixel();
   if (const auto& allocation = settings.allocation)

@@ -13,6 +13,7 @@ struct DirectLightSample {
   LightSample<F> light;
   Vec3<F> origin, along;     ///< The shadow segment: where it starts, and from there to the light (m).
   Color<F> unshadowed;       ///< Radiance towards `wo`, weighted, where nothing hides the light.
+  F control = F(0);          ///< Of optimal weights, in units of ByBoth::alpha.
   Int<F> aim;                ///< Rank and piece of the light: near ones are near each other.
   Mask<F> needs_shadow_ray;  ///< Elsewhere it adds nothing, hidden or not.
 };
@@ -23,6 +24,7 @@ DirectLightSample<F> select(const Mask<F>& m, const DirectLightSample<F>& a, con
           select(m, a.origin, b.origin),
           select(m, a.along, b.along),
           select(m, a.unshadowed, b.unshadowed),
+          select(m, a.control, b.control),
           select(m, a.aim, b.aim),
           mask_or(mask_and(m, a.needs_shadow_ray), mask_and(mask_not(m), b.needs_shadow_ray))};
 }
@@ -57,7 +59,8 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
   const F cosine = vertex.foreshortening(wi_local.z);
   const float light_samples = float(rules.light_draws(vertex_number)),
               bsdf_samples = float(rules.bsdf_samples(vertex_number));
-  const Mask<F> is_alone = vertex.leaves_direct_light_to_lights(scene);
+  const Mask<F> is_alone =
+      rules.is_shared_only_where_glossy() ? vertex.leaves_direct_light_to_lights(scene) : F(1) < F(0);
   Color<F> scattered = black<F>();
   for_each_scatterer<F>(scene, vertex, is_lit, [&](const auto& bsdf, const Mask<F>& scattering) {
     // Weigh it: against the chance that a BSDF sample finds the same light.
@@ -65,6 +68,11 @@ DirectLightSample<F> sample_direct_light(const Scene& scene, const LightSampler&
         rules, select(scattering, sample.light.pdf_solid_angle, F(1)) * F(light_samples),
         [&] { return bsdf.pdf_solid_angle(wo_local, wi_local) * F(bsdf_samples); });
     if (rules.is_shared_only_where_glossy()) weight = select(is_alone, F(1), weight);
+    if (rules.alpha(vertex_number)) {
+      const F control = light_sample_control(sample.light.pdf_solid_angle * F(light_samples),
+                                             bsdf.pdf_solid_angle(wo_local, wi_local) * F(bsdf_samples));
+      sample.control = select(mask_and(scattering, mask_not(is_alone)), control, sample.control);
+    }
     const Color<F> f = bsdf.eval(wo_local, wi_local);
     scattered = select(scattering, f * sample.light.radiance_over_pdf * (cosine * weight), scattered);
   });

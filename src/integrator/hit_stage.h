@@ -39,16 +39,34 @@ template <class F>
   block.clock.finish(Stage::medium);
 }
 
-/// The weight of light that the rays i, i + 1 ... have met at a vertex, and whose density (1/sr) by one light
-/// sample `pdf_light(receiver)` gives.
+/// How light that rays have met counts, in the lanes that a mask of it says.
+template <class F>
+struct MetLight {
+  F weight;
+  F control = F(0);               ///< Of optimal weights.
+  const Colorf* alpha = nullptr;  ///< Their coefficient; null: there is no control variate.
+
+  /// \param weighted the light, with the path's throughput and the weight
+  Color<F> controlled(const Color<F>& weighted) const {
+    if (!alpha) return weighted;
+    return weighted + select(is_black(weighted), black<F>(), control_variate(*alpha, control));
+  }
+};
+
+/// Light that the rays i, i + 1 ... have met at a vertex, and whose density (1/sr) by one light sample
+/// `pdf_light(receiver)` gives.
 template <class F, class Function>
-F weight_at_hit(const PathRules& rules, const PathColumns& path, int i, int vertex, const Mask<F>& m,
-                Function&& pdf_light) {
+MetLight<F> met_light(const PathRules& rules, const PathColumns& path, int i, int vertex, const Mask<F>& m,
+                      Function&& pdf_light) {
+  MetLight<F> met{.weight = F(1), .alpha = vertex > 0 ? rules.alpha(vertex - 1) : nullptr};
   F pdf = load_lanes<F>(&path.pdf[i]);
   if (vertex > 0) pdf = pdf * F(float(rules.bsdf_samples(vertex - 1)));
-  return met_light_weight<F>(rules, pdf, m, [&] {
-    return pdf_light(load_receiver<F>(path.receiver, i)) * F(float(rules.light_draws(vertex - 1)));
+  met.weight = met_light_weight<F>(rules, pdf, m, [&] {
+    const F other = pdf_light(load_receiver<F>(path.receiver, i)) * F(float(rules.light_draws(vertex - 1)));
+    if (met.alpha) met.control = met_light_control(pdf, other);
+    return other;
   });
+  return met;
 }
 
 /// Adds the emission of the lights that rays have hit on a side that shines.
@@ -70,19 +88,21 @@ template <class F>
     const Mask<F> is_front = mask_and(is_light, mask_or(is_turned, cos_theta_ray < F(0)));
     if (!any(is_front)) continue;
     const Vec3<F> position = ray.origin + ray.direction * hit.t;
-    const F weight = weight_at_hit<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
+    const MetLight<F> met = met_light<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
       const LightTechnique technique = rules.light_samples()->technique;
       const Int<F> facet = light_sampler.chooses_facets() || technique != LightTechnique::area
                                ? scene.lights.facet_at<F>(light, hit.primitive, position, is_front)
                                : Int<F>(whole_light);
       const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), facet);
-      const LightHit<F> met{position, ng, ray.direction, facet, light_sampler.chooses_facets(), technique};
-      return scene.lights.pdf_solid_angle<F>(light, pmf, receiver, met, is_front);
+      const LightHit<F> hit_on_light{position, ng, ray.direction, facet, light_sampler.chooses_facets(),
+                                     technique};
+      return scene.lights.pdf_solid_angle<F>(light, pmf, receiver, hit_on_light, is_front);
     });
     const Color<F> radiance = scene.lights.radiance<F>(light, is_front, [&](const Mask<F>& lanes) {
       return surface_uv<F>(scene.geometry, hit.geometry, hit.primitive, hit.barycentric, ng, lanes);
     });
-    add_contribution<F>(block, i, is_front, load_lanes<F>(path.throughput, i) * radiance * weight,
+    add_contribution<F>(block, i, is_front,
+                        met.controlled(load_lanes<F>(path.throughput, i) * radiance * met.weight),
                         {light, Technique::bsdf, vertex});
   }
   block.clock.finish(Stage::emission);
@@ -100,14 +120,16 @@ template <class F>
     const Vec3<F> direction = load_lanes<F>(path.ray.direction, i);
     for (int k = 0; k < scene.lights.infinite_count(); ++k) {
       const Int<F> light(scene.lights.infinite_light(k));
-      const F weight = weight_at_hit<F>(rules, path, i, vertex, is_outside, [&](const Receiver<F>& receiver) {
-        return light_sampler.pmf<F>(receiver, light, Int<F>(0)) *
-               scene.lights.infinite_pdf_solid_angle<F>(k, direction, is_outside);
-      });
-      add_contribution<F>(block, i, is_outside,
-                          load_lanes<F>(path.throughput, i) *
-                              (scene.lights.infinite_radiance<F>(k, direction, is_outside) * weight),
-                          {light, Technique::bsdf, vertex});
+      const MetLight<F> met =
+          met_light<F>(rules, path, i, vertex, is_outside, [&](const Receiver<F>& receiver) {
+            return light_sampler.pmf<F>(receiver, light, Int<F>(0)) *
+                   scene.lights.infinite_pdf_solid_angle<F>(k, direction, is_outside);
+          });
+      add_contribution<F>(
+          block, i, is_outside,
+          met.controlled(load_lanes<F>(path.throughput, i) *
+                         (scene.lights.infinite_radiance<F>(k, direction, is_outside) * met.weight)),
+          {light, Technique::bsdf, vertex});
     }
   }
   block.clock.finish(Stage::emission);

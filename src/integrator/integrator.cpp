@@ -12,7 +12,7 @@ namespace {
 
 using Type = Parameter::Type;
 
-constexpr std::string_view heuristics_text = "balance, power (exponent 2) or maximum";
+constexpr std::string_view heuristics_text = "balance, power (exponent 2), maximum, compensated or optimal";
 const Parameter heuristic_parameter{"heuristic", Type::text, "balance", "", std::string(heuristics_text)};
 const Parameter power_parameter{"heuristic", Type::text, "power", "", std::string(heuristics_text)};
 
@@ -118,8 +118,10 @@ Heuristic heuristic_named(std::string_view name, const Location& where) {
   if (name == "balance") return Heuristic::balance;
   if (name == "power") return Heuristic::power;
   if (name == "maximum") return Heuristic::maximum;
+  if (name == "compensated") return Heuristic::compensated;
+  if (name == "optimal") return Heuristic::optimal;
   throw InputError(where, fmt::format("unknown heuristic '{}'", name),
-                   known_names(name, {"balance", "power", "maximum"}));
+                   known_names(name, {"balance", "power", "maximum", "compensated", "optimal"}));
 }
 Heuristic heuristic_of(const Parameters& parameters) {
   return heuristic_named(parameters.text("heuristic"), parameters.location("heuristic"));
@@ -161,6 +163,10 @@ std::string_view name_of(Heuristic heuristic) {
       return "power";
     case Heuristic::maximum:
       return "maximum";
+    case Heuristic::compensated:
+      return "compensated";
+    case Heuristic::optimal:
+      return "optimal";
   }
   return "";
 }
@@ -178,8 +184,11 @@ std::string text_of(const LightSamples& lights) {
 std::string text_of(const ByLights& by) { return text_of(by.lights); }
 std::string text_of(const ByBsdf& by) { return fmt::format(" bsdf_samples={}", by.bsdf_samples); }
 std::string text_of(const ByBoth& by) {
-  return fmt::format(" heuristic={}{} bsdf_samples={}{}", name_of(by.heuristic), text_of(by.lights),
-                     by.bsdf_samples, by.only_where_glossy ? " only_where_glossy" : "");
+  std::string text =
+      fmt::format(" heuristic={}{} bsdf_samples={}{}", name_of(by.heuristic), text_of(by.lights),
+                  by.bsdf_samples, by.only_where_glossy ? " only_where_glossy" : "");
+  if (by.alpha != Colorf{0, 0, 0}) text += fmt::format(" alpha={},{},{}", by.alpha.r, by.alpha.g, by.alpha.b);
+  return text;
 }
 std::string text_of(const PathRules& rules) {
   return std::visit([](const auto& by) { return text_of(by); }, rules.direct_light());
@@ -313,6 +322,16 @@ IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::str
                     "take path, direct_light, mis or path_mis",
                     heuristic, integrator.name));
   return {integrator.name, integrator.path_rules()->with_heuristic(named)};
+}
+
+IntegratorSettings with_alpha(const IntegratorSettings& integrator, const Colorf& alpha) {
+  return {integrator.name, integrator.path_rules()->with_alpha(alpha)};
+}
+
+bool compensates_environments(const IntegratorSettings& integrator) {
+  const PathRules* rules = integrator.path_rules();
+  return rules && rules->heuristic() && *rules->heuristic() == Heuristic::compensated &&
+         !rules->is_shared_only_where_glossy();
 }
 
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights) {

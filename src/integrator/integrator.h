@@ -18,7 +18,8 @@
 
 namespace etendue {
 
-using IntegratorRules = std::variant<PathRules, ShowNormals, VisibilityRules, ShowMaterial, SimpleLight, SingleRays>;
+using IntegratorRules =
+    std::variant<PathRules, ShowNormals, VisibilityRules, ShowMaterial, SimpleLight, SingleRays>;
 
 struct IntegratorSettings {
   std::string_view name = "light";  ///< Of those that integrator_from_name knows.
@@ -34,7 +35,7 @@ struct IntegratorSettings {
 };
 
 const std::vector<Plugin>& integrator_plugins();
-/// "balance", "power", "maximum"; empty where weights do not depend on densities.
+/// "balance", "power" and so on; empty where weights do not depend on densities.
 std::string_view heuristic_name(const IntegratorSettings& integrator);
 
 /// The name and all rules, on one line: "mis heuristic=power light_samples=3 sampler=power bsdf_samples=2".
@@ -56,9 +57,15 @@ IntegratorSettings with_candidates(const IntegratorSettings& integrator, int can
 /// The same with so many light samples at the first vertex, 1 to 65536; those behind take as many as before.
 /// Throws InputError for other numbers, and where the integrator samples no lights.
 IntegratorSettings with_shadow_rays(const IntegratorSettings& integrator, int shadow_rays);
-/// The same with weights by "balance", "power" or "maximum". Throws InputError for another name, and where
+/// The same with weights by a name that heuristic_name gives. Throws InputError for another name, and where
 /// the weights of the integrator do not depend on densities.
 IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::string_view heuristic);
+
+/// The same with the coefficient of optimal weights, ByBoth::alpha; heuristic_name must say "optimal".
+IntegratorSettings with_alpha(const IntegratorSettings& integrator, const Colorf& alpha);
+/// Whether it finds all light from infinity by BSDF samples too, so that light samples may leave out where
+/// they suffice: Lights::compensate_environments.
+bool compensates_environments(const IntegratorSettings& integrator);
 
 /// The same with light samples by another technique, of light_technique_from_name. Throws InputError for an
 /// unknown one, and where the integrator samples no lights.

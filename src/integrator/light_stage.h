@@ -72,11 +72,14 @@ template <class F>
     }
     const Receiver<F> receiver = receiver_at<F>(scene, block, i, vertex, numbers.front().vertex);
     const Color<F> throughput = load_lanes<F>(path.throughput, i);
+    const Colorf* alpha = rules.alpha(numbers.front().vertex);
     for (int k = 0; k < shadow.samples; ++k) {
       const DirectLightSample<F> sample = light_sample_of<F>(scene, light_sampler, rules, block, i, vertex,
                                                              receiver, numbers[std::size_t(k)]);
       const int row = shadow.row(k, i);
-      store_lanes(shadow.unshadowed, row, sample.unshadowed * throughput);
+      Color<F> unshadowed = sample.unshadowed * throughput;
+      if (alpha) unshadowed = unshadowed + control_variate(*alpha, sample.control);
+      store_lanes(shadow.unshadowed, row, unshadowed);
       store_mask<F>(&shadow.is_needed[row], sample.needs_shadow_ray);
       store_lanes(shadow.origin, row, sample.origin);
       store_lanes(shadow.along, row, sample.along);

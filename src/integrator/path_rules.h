@@ -2,56 +2,12 @@
 #pragma once
 
 #include "base/simd_math.h"
-#include "light/technique.h"
+#include "integrator/direct_light_rules.h"
 
 #include <algorithm>
-#include <string_view>
 #include <variant>
 
 namespace etendue {
-
-/// How two techniques share the light that both can find. average: each counted half. balance, power: by
-/// multiple importance sampling (Veach 1997, "Robust Monte Carlo methods for light transport simulation",
-/// eq. 9.8, and section 9.2.2.2 with exponent 2). maximum: by the technique of the higher density alone (same
-/// section).
-enum class Heuristic { average, balance, power, maximum };
-
-struct LightSamples {
-  int count = 1;                         ///< At each vertex.
-  std::string_view sampler = "uniform";  ///< Which light: a name of light_sampler_plugins().
-  int later_count = 0;                   ///< At the vertices behind the first; 0: as many as there.
-  /// Each light sample of the first vertex is one of so many candidates, chosen by what they would add. 0: by
-  /// what there is to choose from, see settled().
-  int candidates = 1;
-  int glossy_candidates = 0;  ///< The same where surfaces are not diffuse; 0: as many as elsewhere.
-  LightTechnique technique = LightTechnique::area;  ///< Where on the light.
-
-  friend bool operator==(const LightSamples&, const LightSamples&) = default;
-};
-
-// How the light that reaches a vertex straight from a light is estimated.
-
-struct ByLights {
-  LightSamples lights{};
-
-  friend bool operator==(const ByLights&, const ByLights&) = default;
-};
-/// By whether the path's next ray meets a light.
-struct ByBsdf {
-  int bsdf_samples = 1;  ///< At the first vertex, each a path of its own; one at those behind.
-
-  friend bool operator==(const ByBsdf&, const ByBsdf&) = default;
-};
-struct ByBoth {
-  Heuristic heuristic = Heuristic::balance;
-  LightSamples lights{};
-  int bsdf_samples = 1;  ///< As of ByBsdf.
-  /// Where surfaces are diffuse, BSDF samples do not share in direct light, which light samples find alone.
-  bool only_where_glossy = false;
-
-  friend bool operator==(const ByBoth&, const ByBoth&) = default;
-};
-using DirectLight = std::variant<ByLights, ByBsdf, ByBoth>;
 
 /// How far paths go: only to the first vertex, whose direct light is all; on from there without end; or on
 /// from mirrors and smooth dielectrics only, whose light no sample of the lights finds.
@@ -85,6 +41,12 @@ class PathRules {
   PathRules with_heuristic(Heuristic heuristic) const {
     PathRules changed = *this;
     std::get<ByBoth>(changed.direct_light_).heuristic = heuristic;
+    return changed;
+  }
+  /// The same rules with another ByBoth::alpha; heuristic() must not be null.
+  PathRules with_alpha(const Colorf& alpha) const {
+    PathRules changed = *this;
+    std::get<ByBoth>(changed.direct_light_).alpha = alpha;
     return changed;
   }
 
@@ -130,6 +92,11 @@ class PathRules {
   const Heuristic* heuristic() const {
     const auto* by = std::get_if<ByBoth>(&direct_light_);
     return by ? &by->heuristic : nullptr;
+  }
+  /// The coefficient of the control variate of a vertex; null where there is none.
+  const Colorf* alpha(int vertex) const {
+    const auto* by = std::get_if<ByBoth>(&direct_light_);
+    return by && vertex == 0 && by->alpha != Colorf{0, 0, 0} ? &by->alpha : nullptr;
   }
   /// Whether weights depend on the densities of both techniques.
   bool needs_both_pdfs() const { return heuristic() && *heuristic() != Heuristic::average; }

@@ -33,7 +33,9 @@ class ResampledLight {
   DirectLightSample<F> take() const {
     DirectLightSample<F> sample = kept_;
     sample.needs_shadow_ray = mask_not(total_ == F(0));
-    sample.unshadowed = kept_.unshadowed * select(sample.needs_shadow_ray, total_ / adds_, F(0));
+    const F stands_for = select(sample.needs_shadow_ray, total_ / adds_, F(0));
+    sample.unshadowed = kept_.unshadowed * stands_for;
+    sample.control = kept_.control * stands_for;
     return sample;
   }
 

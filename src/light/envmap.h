@@ -25,7 +25,7 @@ namespace etendue {
 /// often than in 1 of 20 samples by the map with its luminance capped at about 8 times the mean of what is
 /// left: a sun behind the horizon must not take all samples, and where it has less than 19 of 20 parts of the
 /// light, that changes hardly anything. The density integrates to 1 and is 0 only where the radiance is, or
-/// where a cell has less than 2^-30 of its row's share or its row of all.
+/// where a cell has less than 2^-30 of its row's share or its row of all; compensated, in the darker part.
 class Envmap {
  public:
   /// \param rgb three numbers a texel, rows from the top (v = 0), finite and not negative, not all 0
@@ -49,6 +49,12 @@ class Envmap {
   template <class F>
   Sample<F> sample(const Vec2<UInt<F>>& u) const;
 
+  /// From now on samples directions in proportion to how far the luminance exceeds its mean: for where BSDF
+  /// samples find the light too, which are as many everywhere on the average of all receivers. Unless it does
+  /// nowhere. (Karlík et al. 2019, "MIS compensation: optimizing sampling techniques in multiple importance
+  /// sampling".)
+  void compensate();
+
   double mean_luminance() const { return mean_luminance_; }  ///< Over all directions.
 
   std::int32_t width() const { return width_; }
@@ -67,20 +73,33 @@ class Envmap {
     Color<F> color[4];
     F weight[4];
   };
-  template <class F>
+  template <class F, bool is_compensated>
   Corners<F> corners(const Int<F>& column, const Int<F>& row) const;
   template <class F>
   Value<F> value(const Corners<F>& corners, const Place<F>& place, const F& sin_theta) const;
+  // Two of each, so that images without compensation keep their bits.
+  template <class F, bool is_compensated>
+  Value<F> value_at(const Vec3<F>& d, const Mask<F>& m) const;
+  template <class F, bool is_compensated>
+  Sample<F> sample_by(const Vec2<UInt<F>>& u) const;
   template <class F>
   Mask<F> is_cap(const Int<F>& row) const {
     return mask_or(equal(row, Int<F>(0)), equal(row, Int<F>(height_)));
   }
 
+  /// What sampling goes by, from the luminance above floor_luminance_ of each texel.
+  void make_shares();
+  /// Mean luminance of a cell x its solid angle, without the 2 pi / width that all cells share; luminances
+  /// have `floor` taken off, and are capped.
+  double weight_of_cell(std::int32_t column, std::int32_t row, double floor, double cap) const;
+  double luminance_over(std::int32_t column, std::int32_t row, double floor) const;
+
   std::int32_t width_, height_;
   std::vector<float> rgb_;
   std::vector<float> sin_theta_;  ///< Of each row of texels.
-  float cap_one_minus_cos_;       ///< At the rim of a cap.
+  double cap_one_minus_cos_;      ///< At the rim of a cap.
   double mean_luminance_ = 0;
+  float floor_luminance_ = 0;  ///< What is below is not sampled.
   std::vector<std::int32_t> row_shares_, column_shares_;
 };
 

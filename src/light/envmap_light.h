@@ -43,6 +43,10 @@ class EnvmapLights {
   double power(std::int32_t row, const Sphere& scene_bounds) const {
     return maps_[std::size_t(row)].map.mean_luminance() * 4 * double(pi) * cross_section(scene_bounds);
   }
+  /// Of all maps: Envmap::compensate.
+  void compensate() {
+    for (Placed& placed : maps_) placed.map.compensate();
+  }
   std::optional<LightBounds> bounds(std::int32_t /*row*/) const { return std::nullopt; }
 
   /// Per unit of strength, W/(m^2 sr).

@@ -28,6 +28,10 @@ class Lights : public LightProperties {
                 std::get<Table>(tables_).add(std::forward<Light>(light)...));
   }
 
+  /// From now on light samples of environment maps leave their darker parts to BSDF samples
+  /// (Envmap::compensate), which must find all that they leave: after all lights have been added.
+  void compensate_environments() { std::get<EnvmapLights>(tables_).compensate(); }
+
   /// The light that a chosen light, or a facet of it, sends to a receiver. \param pmf with which it was
   /// chosen \param u 32-bit fractions
   template <class F>

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 namespace etendue {
@@ -16,18 +17,20 @@ namespace {
 using F = NativeLanes;
 
 /// Counts and notes samples that are not finite and >= 0, and makes them 0 so that they do not poison their
-/// pixel.
+/// pixel. A control variate may make a sample negative.
 void set_invalid_aside(TileJob& job, SampleBlock& block, const PixelBlocks& pixels) {
   ColorColumn& radiance = block.radiance;
+  const PathRules* rules = job.settings->integrator.path_rules();
+  const bool may_be_negative = rules && rules->alpha(0);
   for (int i = 0; i < block.padded_count; i += lane_count_v<F>) {
-    const Color<F> c = load_lanes<F>(radiance, i);
+    Color<F> c = load_lanes<F>(radiance, i);
+    if (may_be_negative) c = {abs(c.r), abs(c.g), abs(c.b)};
     if (all(mask_and(is_finite_nonnegative(c.r), is_finite_nonnegative(c.g), is_finite_nonnegative(c.b))))
       continue;
     for (int s = i; s < i + lane_count_v<F>; ++s) {
       const Colorf sample{radiance.r[s], radiance.g[s], radiance.b[s]};
-      if (is_finite_nonnegative(sample.r) && is_finite_nonnegative(sample.g) &&
-          is_finite_nonnegative(sample.b))
-        continue;
+      const auto is_valid = [&](float x) { return is_finite_nonnegative(may_be_negative ? std::abs(x) : x); };
+      if (is_valid(sample.r) && is_valid(sample.g) && is_valid(sample.b)) continue;
       radiance.r[s] = radiance.g[s] = radiance.b[s] = 0;
       for (ColorColumn& layer : block.layers) layer.r[s] = layer.g[s] = layer.b[s] = 0;
       if (s >= block.count) continue;

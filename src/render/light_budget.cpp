@@ -1,24 +1,17 @@
 #include "render/light_budget.h"
 
-#include "base/hash.h"
-#include "lightsampler/light_cuts.h"
-#include "render/kernel.h"
+#include "render/pilot_squares.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 namespace etendue {
 namespace {
 
-constexpr int side_px = 2;   // Of the squares of pixels that are tried.
 constexpr int samples = 16;  // A pixel, in each of the two renders.
 constexpr double better_by = 1.5;
-constexpr int pixels_a_square = 1024, fewest_squares = 64, most_squares = 2048;
+constexpr int pixels_a_square = 1024, most_squares = 2048;
 
 /// About how long a sample takes, in seconds, as measured over scenes of 1e1 to 1e6 triangles: two thirds of
 /// it for what is seen, the rest for light samples.
@@ -30,59 +23,15 @@ double seconds_of_sample(const Scene& scene, std::int64_t facets, const LightBud
   return 2 * ray + budget.light_samples * (ray + budget.candidates * candidate);
 }
 
-/// Squares of pixels, each in a tile of its own that lights are chosen for, scattered over the image.
-std::vector<PixelRectangle> squares_of(const Scene& scene, int count) {
-  const int width = scene.camera.width_px, height = scene.camera.height_px;
-  const int columns = LightCuts::tiles_across(width), tiles = columns * LightCuts::tiles_across(height);
-  std::vector<PixelRectangle> squares;
-  for (int k = 0; k < std::min(count, tiles); ++k) {
-    const std::uint64_t random = hash64(std::uint64_t(k));
-    const int tile = int(std::int64_t(k) * tiles / std::min(count, tiles));
-    constexpr int places = LightCut::tile_px / side_px;
-    const int x = tile % columns * LightCut::tile_px + side_px * int(random % places),
-              y = tile / columns * LightCut::tile_px + side_px * int(random / places % places);
-    if (x + side_px <= width && y + side_px <= height) squares.push_back({x, y, x + side_px, y + side_px});
-  }
-  return squares;
-}
-
-struct Worker {
-  std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
-  std::vector<Color<double>> means;
-  InvalidSamples invalid;
-};
-
 /// Mean absolute difference of the two replicates of all pixels; none where it was stopped.
-std::optional<double> error_of(const Scene& scene, const RenderSettings& settings,
-                               const LightSampler& light_sampler, const std::vector<PixelRectangle>& squares,
-                               LightCutStore& cuts, const StopRequest* stop) {
-  const Kernel& kernel = kernel_for(settings.isa);
-  tbb::enumerable_thread_specific<Worker> workers;
-  const std::function<bool()> must_stop = [&] { return stop && stop->soon.load(std::memory_order_relaxed); };
-  std::vector<double> of_square(squares.size());
-  const auto try_square = [&](std::size_t k) {
-    if (must_stop()) return;
-    Worker& worker = workers.local();
-    worker.block->cut_store = &cuts;
-    TileJob job{.scene = &scene,
-                .light_sampler = &light_sampler,
-                .settings = &settings,
-                .unit = {.pixels = squares[k], .replicates = 2, .samples_per_replicate = samples},
-                .block = worker.block.get(),
-                .means = &worker.means,
-                .invalid = &worker.invalid};
-    kernel.render_tile(job);
-    for (std::size_t i = 0; i < worker.means.size(); i += 2)
-      of_square[k] += std::abs(luminance(worker.means[i]) - luminance(worker.means[i + 1]));
-  };
-  const int threads = settings.threads > 0 ? settings.threads : available_threads();
-  tbb::task_arena arena(std::min(threads, available_threads()));
-  arena.execute(
-      [&] { tbb::parallel_for(std::size_t{0}, squares.size(), try_square, tbb::simple_partitioner{}); });
-  if (must_stop()) return std::nullopt;
+std::optional<double> error_of(PilotSquares& squares, const RenderSettings& settings,
+                               const StopRequest* stop) {
+  const auto means = squares.render(settings, 2, samples, stop);
+  if (!means) return std::nullopt;
   double sum = 0;
-  for (const double difference : of_square) sum += difference;
-  return sum / double(squares.size() * side_px * side_px);
+  for (std::size_t i = 0; i < means->size(); i += 2)
+    sum += std::abs(luminance((*means)[i]) - luminance((*means)[i + 1]));
+  return sum / double(means->size() / 2);
 }
 
 }  // namespace
@@ -100,20 +49,12 @@ std::optional<BudgetPilot> light_budget_for(const Scene& scene, const RenderSett
           std::ranges::none_of(pilot.tried, [&](const TriedBudget& known) { return known.budget == other; }))
         pilot.tried.push_back({other, 0, 0});
   const double pixels = double(scene.camera.width_px) * scene.camera.height_px;
-  const int wanted = int(std::min(pixels / pixels_a_square, double(most_squares)));
-  if (wanted < fewest_squares) return std::nullopt;
-  const std::vector<PixelRectangle> squares = squares_of(scene, wanted);
-  RenderSettings of_pilot = settings;
-  of_pilot.replicates_by = ReplicatesBy::scrambling;
-  of_pilot.layers.clear();
-  of_pilot.noise_parts.reset();
-  of_pilot.seed = hash64(0xb0d9e7);  // The same for all seeds, so that their images have the same budget.
-  const LightSampler light_sampler = light_sampler_for(settings.integrator, scene.lights);
-  LightCutStore cuts(LightCuts::tiles_across(scene.camera.width_px) *
-                     LightCuts::tiles_across(scene.camera.height_px));
+  if (pixels < fewest_pixels_for_pilots) return std::nullopt;
+  PilotSquares squares(scene, settings, int(std::min(pixels / pixels_a_square, double(most_squares))));
+  RenderSettings of_pilot = pilot_settings(settings, 0xb0d9e7);
   for (TriedBudget& each : pilot.tried) {
     of_pilot.integrator = with_light_budget(settings.integrator, each.budget);
-    const std::optional<double> error = error_of(scene, of_pilot, light_sampler, squares, cuts, stop);
+    const std::optional<double> error = error_of(squares, of_pilot, stop);
     if (!error) return std::nullopt;
     each.error = *error;
     each.seconds = seconds_of_sample(scene, facets, each.budget);

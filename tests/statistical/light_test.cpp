@@ -363,19 +363,21 @@ std::vector<float> random_map(int width, int height, bool has_hot_texel) {
 TEST(Envmap, DirectionsFollowTheDensity) {
   struct Size {
     int width, height;
-    bool has_hot_texel;
+    bool has_hot_texel, is_compensated = false;
   };
-  for (const auto& [width, height, has_hot_texel] :
+  for (const auto& [width, height, has_hot_texel, is_compensated] :
        {Size{1, 1, false}, Size{2, 1, false}, Size{1, 3, false}, Size{8, 4, false}, Size{16, 9, false},
-        Size{16, 9, true}, Size{64, 32, true}}) {
+        Size{16, 9, true}, Size{64, 32, true}, Size{16, 9, false, true}, Size{16, 9, true, true}}) {
     Alone alone;
     // Upright in the cells, and then askew.
     add_envmap(alone, width, height, random_map(width, height, has_hot_texel),
                width == 8 ? rotation({1, 2, 3}, 77) * scaling({-1, 1, 1}) : rotation({1, 0, 0}, 90));
-    expect_directions_follow_density(
-        alone,
-        "map of " + std::to_string(width) + " x " + std::to_string(height) + (has_hot_texel ? ", hot" : ""),
-        60, 1e-3);
+    if (is_compensated) alone.lights.compensate_environments();
+    expect_directions_follow_density(alone,
+                                     "map of " + std::to_string(width) + " x " + std::to_string(height) +
+                                         (has_hot_texel ? ", hot" : "") +
+                                         (is_compensated ? ", compensated" : ""),
+                                     60, 1e-3);
   }
 }
 

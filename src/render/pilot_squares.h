@@ -1,0 +1,39 @@
+// Small squares of pixels, scattered over the image, which pilots render to decide how the rest is.
+#pragma once
+
+#include "lightsampler/light_cuts.h"
+#include "render/render.h"
+#include "render/work_unit.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace etendue {
+
+/// Images of fewer pixels are not worth a pilot.
+inline constexpr double fewest_pixels_for_pilots = 1 << 16;
+
+/// What a render has in common with pilots of it: replicates are scramblings, and the seed is one that no
+/// image has, the same for all seeds, so that what pilots tell is too. No layers.
+RenderSettings pilot_settings(const RenderSettings& settings, std::uint64_t seed);
+
+class PilotSquares {
+ public:
+  /// Squares of 2 x 2 pixels, each in a tile of its own that lights are chosen for; `count` at most. \param
+  /// scene must outlive it \param settings name the light sampler of all renders
+  PilotSquares(const Scene& scene, const RenderSettings& settings, int count);
+
+  /// The means of all replicates of all pixels, one pixel after the other; none where it was stopped. The
+  /// number of threads changes nothing.
+  std::optional<std::vector<Color<double>>> render(const RenderSettings& settings, int replicates,
+                                                   int samples_per_replicate, const StopRequest* stop);
+
+ private:
+  const Scene& scene_;
+  std::vector<PixelRectangle> squares_;
+  LightSampler light_sampler_;
+  LightCutStore cuts_;
+};
+
+}  // namespace etendue
