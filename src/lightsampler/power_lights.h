@@ -11,8 +11,8 @@ namespace etendue {
 
 class PowerLights {
  public:
-  /// A light of little power is chosen with 2^-28 at the least, one of none never; where no light has any,
-  /// all alike.
+  /// A light of little power is chosen with a hundredth of what all alike would have (2^-28 at the least),
+  /// one of none never; where no light has any, all alike.
   explicit PowerLights(const Lights& lights);
 
   static constexpr bool chooses_facets = false;

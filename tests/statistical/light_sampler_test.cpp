@@ -122,6 +122,17 @@ TEST_P(EveryLightSampler, LeavesNoLightOut) {
     EXPECT_GT((sampler.pmf<float>(receiver, light, 0)), 0) << light;
 }
 
+/// A sky of a sphere 100 km wide has all the power, and the lamp on the table lights the room.
+TEST(LightSampler, ByPowerTakesEachAHundredthAsOftenAsAllAlike) {
+  Lights lights;
+  for (const float radiance : {1e12f, 1.0f, 1.0f, 0.0f})
+    lights.add<RectangleLights>({radiance, radiance, radiance}, "", Vec3f{0, 0, 2}, Vec3f{0, 1, 0},
+                                Vec3f{1, 0, 0});
+  const LightSampler sampler = make_light_sampler("power", lights);
+  EXPECT_GT((sampler.pmf<float>(receiver, 1, 0)), 0.99f * 0.01f / 4);
+  EXPECT_EQ((sampler.pmf<float>(receiver, 3, 0)), 0);
+}
+
 TEST_P(EveryLightSampler, TakesLightsWithoutPower) {
   Lights lights;
   for (int k = 0; k < 3; ++k)
