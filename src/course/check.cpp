@@ -10,19 +10,20 @@ namespace {
 
 using nlohmann::json;
 
-/// The first samples of each probe, as a plot wants them: what came over what is right.
+/// The first samples of each ray, as a plot wants them: what came over what is right.
 json points_of(const IntegratorCheck& check) {
   constexpr int most_of_a_probe = 120;
   const auto sum = [](const Colorf& c) { return double(c.r) + c.g + c.b; };
-  std::vector<int> counts(check.probes.size());
+  std::vector<int> rays(check.probes.size()), counts(check.evidence.rays.size());
+  for (const RayEvidence& ray : check.evidence.rays) ++rays[ray.probe];
   json points = json::array();
   for (const SampleEvidence& sample : check.evidence.samples) {
     const double right = sum(predicted(sample, {})), found = sum(sample.value);
     const double explained = sum(predicted(sample, check.diagnosis.fit));
     if (sample.points.empty() || check.evidence.rays[sample.ray].is_light || !std::isfinite(found) ||
-        (right == 0 && found == 0) || counts[sample.probe] == most_of_a_probe)
+        (right == 0 && found == 0) || counts[sample.ray] >= most_of_a_probe / rays[sample.probe])
       continue;
-    ++counts[sample.probe];
+    ++counts[sample.ray];
     points.push_back({{"probe", sample.probe},
                       {"light", sample.points[0].light},
                       {"found", found},
