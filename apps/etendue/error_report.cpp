@@ -67,16 +67,16 @@ bool do_halves_differ(const ConvergenceChecks& checks) {
 
 void report_checks(const std::string& name, const ConvergenceChecks& checks) {
   if (checks.rise_by_largest > 0.01)
-    say("{}: were the replicate that raises the mean most drawn once more, the mean would rise by {:.2g} %\n",
-        name, 100 * checks.rise_by_largest);
+    say("{}: were the replicate that raises the mean most drawn once more, the mean would rise by {}\n", name,
+        percent_text(checks.rise_by_largest));
   if (checks.slope_low > -0.5)
     say("{}: the error falls as samples^{:.2f} ({:.2f} to {:.2f}), slower than the root: few samples decide, "
         "or "
         "the variance is infinite\n",
         name, checks.slope, checks.slope_low, checks.slope_high);
   if (do_halves_differ(checks))
-    say("{}: two halves of the samples differ at the 1 % level in {:.2g} % of pixels\n", name,
-        100 * double(checks.p_values_below_1_percent) / double(checks.pixels_tested()));
+    say("{}: two halves of the samples differ at the 1 % level in {} of pixels\n", name,
+        percent_text(double(checks.p_values_below_1_percent) / double(checks.pixels_tested())));
 }
 
 void report_intervals(const Rendering& rendering) {
@@ -86,10 +86,10 @@ void report_intervals(const Rendering& rendering) {
       fmt::format("{:g} % intervals: {:.1f} % of pixels by their own spread, {:.1f} % by their neighbours'",
                   100 * rendering.options.confidence, percent(IntervalRule::student_t),
                   percent(IntervalRule::neighbours));
-  if (const double rare = percent(IntervalRule::rare_events); rare > 0)
-    text += fmt::format("; {:.2g} % lie near rare events and cannot be trusted", rare);
-  if (const double black = percent(IntervalRule::black); black > 0)
-    text += fmt::format("; {:.2g} % met no light", black);
+  if (const double rare = shares[std::size_t(IntervalRule::rare_events)]; rare > 0)
+    text += fmt::format("; {} lie near rare events and cannot be trusted", percent_text(rare));
+  if (const double black = shares[std::size_t(IntervalRule::black)]; black > 0)
+    text += fmt::format("; {} met no light", percent_text(black));
   say("{}\n", text);
 }
 

@@ -15,4 +15,10 @@ void say(fmt::format_string<Args...> format, Args&&... args) {
   std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
 }
 
+/// A share as "0.32 %"; of large ones whole numbers.
+inline std::string percent_text(double share) {
+  const double value = 100 * share;
+  return value < 9.95 ? fmt::format("{:.2g} %", value) : fmt::format("{:.0f} %", value);
+}
+
 }  // namespace etendue::app

@@ -1,6 +1,7 @@
 #include "verify_report.h"
 
 #include "image/image_file.h"
+#include "messages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +24,6 @@ std::string_view verdict_name(Verdict verdict) {
       break;
   }
   return "cannot tell";
-}
-
-/// "0.32 %"; of large ones whole numbers.
-std::string percent(double share) {
-  const double value = 100 * share;
-  return value < 9.95 ? fmt::format("{:.2g} %", value) : fmt::format("{:.0f} %", value);
 }
 
 std::string power_of_ten(double p) { return p < 1e-300 ? "< 1e-300" : fmt::format("{:.1g}", p); }
@@ -107,7 +102,7 @@ std::string report_text(const VerifyResult& result, const Scene& scene, const Sc
   for (std::size_t k = 0; k < result.estimators.size(); ++k) {
     const VerifiedEstimator& e = result.estimators[k];
     text += fmt::format("{:<{}}  {:>7}  {:>10.5g} +- {:>7.2g}  {:>7}  {}\n", e.estimator.name, width,
-                        e.samples_per_pixel, e.mean, e.standard_error, percent(e.smallest_difference),
+                        e.samples_per_pixel, e.mean, e.standard_error, percent_text(e.smallest_difference),
                         estimator_verdict(e, result, k));
     if (e.invalid_samples > 0)
       text += fmt::format("{:<{}}  {} samples were not a number, infinite or negative\n", "", width,
@@ -143,7 +138,7 @@ std::string report_text(const VerifyResult& result, const Scene& scene, const Sc
     case Verdict::agree:
       text += fmt::format(
           "AGREE: between the two that tell most a difference of {} of the mean would have been found\n",
-          percent(result.smallest_difference));
+          percent_text(result.smallest_difference));
       break;
     case Verdict::differ:
       text += fmt::format("DIFFER, at a level of {:g} for the whole run\n", result.level);
