@@ -31,6 +31,8 @@ json checked(const std::string& folder, const SubmissionCheckSettings& settings)
     return check_submission(submission_in(folder), settings);
   } catch (const InputError& error) {
     return {{"folder", folder}, {"outcome", "ended"}, {"why", error.what()}, {"at", ""}};
+  } catch (const fs::filesystem_error& error) {
+    return {{"folder", folder}, {"outcome", "ended"}, {"why", error.what()}, {"at", ""}};
   }
 }
 

@@ -110,11 +110,10 @@ void add_error_stats(const Rendering& rendering, nlohmann::ordered_json& json) {
     error["pilot"] = {{"seconds", rendering.pilots.samples->seconds},
                       {"samples", rendering.pilots.samples->samples}};
     if (const std::optional<ErrorGoal> goal = error_goal(rendering.options))
-      error["goal"] = {
-          {"relative", goal->relative},
-          {"share", goal->share},
-          {"within_by_bars", share_within(rendering.result.film, rendering.errors.intervals, *goal)},
-          {"bars_over_errors", rendering.pilots.samples->bars_over_errors}};
+      error["goal"] = {{"relative", goal->relative},
+                       {"share", goal->share},
+                       {"reached", share_within(rendering.result.film, rendering.errors.intervals, *goal)},
+                       {"bars_over_errors", rendering.pilots.samples->bars_over_errors}};
   }
   const std::array shares = shares_of_rules(rendering);
   for (std::size_t rule = 0; rule < shares.size(); ++rule) error["trust"][rule_names[rule]] = shares[rule];

@@ -104,6 +104,8 @@ Pilots settle_by_pilots(const RenderOptions& options, const Scene& scene, Render
   Pilots pilots;
   pilots.budget = settle_budget(options, scene, settings);
   pilots.weights = settle_weights(options, scene, settings);
+  pilots.is_interrupted = stop_request.soon;
+  if (pilots.is_interrupted) return pilots;
   if (options.replay.empty()) pilots.samples = settle_samples(options, scene, settings);
   if (pilots.samples) pilots.is_interrupted = pilots.samples->is_interrupted;
   if (!pilots.is_interrupted) pilots.allocation = settle_allocation(options, scene, settings);

@@ -335,7 +335,7 @@ class Diagnosing {
       else if (std::isfinite(share) && std::abs(share - 1) > alike &&
                std::abs(share / result_.fit.factor - 1) > alike)
         result_.is_unknown = true;  // As bright as neither itself nor the factor of all makes it.
-      else if (reflects_nothing(ray))
+      else if (result_.findings.empty() && reflects_nothing(ray))
         add(emission_missing, "what they reflect of other lights",
             fmt::format(
                 "a light that shines with {:.4g} reflects {:.4g} of another's light; it is seen with {:.4g}",

@@ -22,18 +22,24 @@ namespace {
 
 constexpr int not_started = 126;  ///< Exit code of a process that could not become the program.
 
-/// Bytes in the files below these folders.
+/// Bytes in the files below these folders; very many where there are too many files to count, or some that
+/// cannot be looked at.
 std::uintmax_t bytes_in(const std::vector<std::filesystem::path>& folders) {
+  constexpr std::uintmax_t too_many = std::uintmax_t{1} << 62;
+  constexpr int most_files = 20000;
   std::uintmax_t bytes = 0;
+  int files = 0;
   for (const std::filesystem::path& folder : folders) {
     std::error_code gone;  // Files come and go while they are looked at.
     for (std::filesystem::recursive_directory_iterator file(folder, gone), end; !gone && file != end;
          file.increment(gone)) {
+      if (++files > most_files) return too_many;
       std::error_code unknown_size;
       if (!file->is_regular_file(unknown_size)) continue;
       const std::uintmax_t size = file->file_size(unknown_size);
       if (!unknown_size) bytes += size;
     }
+    if (gone && gone != std::errc::no_such_file_or_directory) return too_many;
   }
   return bytes;
 }

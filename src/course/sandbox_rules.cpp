@@ -89,6 +89,9 @@ bool filter_calls(pid_t self, bool may_start_programs) {
   for (const long call : {SYS_socket, SYS_ptrace, SYS_process_vm_writev, SYS_io_uring_setup, SYS_tkill})
     filter.refuse(call);
   if (!may_start_programs) {
+    // Folders that nobody may look into could be neither measured nor removed.
+    constexpr int fchmodat2 = 452;
+    for (const long call : {SYS_chmod, SYS_fchmod, SYS_fchmodat, fchmodat2}) filter.refuse(call);
     filter.refuse(SYS_fork);
     filter.refuse(SYS_vfork);
     // Threads are made by clone with a flag that can be seen; that of clone3 cannot, and libraries do
@@ -128,6 +131,8 @@ bool SandboxRules::take_on() const {
   const auto processor_seconds = std::size_t(limits_.seconds) + 1;
   bool is_held = set_limit(RLIMIT_CORE, 0) && set_limit(RLIMIT_FSIZE, limits_.file_bytes) &&
                  set_limit(RLIMIT_CPU, processor_seconds * std::size_t(sysconf(_SC_NPROCESSORS_ONLN)));
+  // Each open file may have been removed from its folder, and takes room that nobody sees.
+  if (!limits_.may_start_programs) is_held = set_limit(RLIMIT_NOFILE, 64) && is_held;
   if (limits_.memory_bytes > 0) is_held = set_limit(RLIMIT_AS, limits_.memory_bytes) && is_held;
   is_held = prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && is_held;
   if (files_ >= 0) is_held = syscall(SYS_landlock_restrict_self, files_, 0) == 0 && is_held;

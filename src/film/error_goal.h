@@ -8,7 +8,7 @@
 
 namespace etendue {
 
-/// Of a share of the pixels, half the interval that holds the true value with `confidence` is to be at most
+/// Of a share of the pixels, the distance within which the true value lies with `confidence` is to be at most
 /// `relative` times the larger of the pixel and 1 % of the image's mean, by luminance. Pixels that met no
 /// light, such as the background, count as within.
 struct ErrorGoal {

@@ -40,11 +40,14 @@ class TexelMixture {
     const UInt<F> stretched = as_uint(to_int(max(rest, F(0)) * F(0x1p24f))) << 8;
     asked.u.x = as_uint(select(is_near_, as_int(stretched), as_int(request.u.x)));
     LightSample<F> sample = by_texels(asked, longest_edge, piece);
+    const F pdf_of_cell = sample.pdf_solid_angle;
     if (any(is_by_direction))
       sample = select(is_by_direction, polygon_->sample(asked, longest_edge, piece), sample);
     const F distance = polygon_->fan().distance_along(sample.wi);
     const LightHit<F> hit{receiver_.position + sample.wi * distance, polygon_->fan().ng, sample.wi, facet_};
-    const F pdf = request.pmf * pdf_solid_angle(hit);
+    // Of the cell that was drawn: the place may round into the next one, where another texel shines.
+    const F pdf_texels = select(is_by_direction, request.pmf * pdf_by_texels(hit), pdf_of_cell);
+    const F pdf = (F(1) - share_) * pdf_texels + share_ * request.pmf * polygon_->pdf_solid_angle(hit);
     const Mask<F> is_there = mask_and(sample.is_there, pdf > F(0));
     sample.radiance_over_pdf =
         select(is_near_, request.strength * select(is_there, F(1) / pdf, F(0)), sample.radiance_over_pdf);
@@ -55,13 +58,15 @@ class TexelMixture {
 
   /// The density (1/sr) of a direction that meets the facet, the choice of the facet not included.
   F pdf_solid_angle(const LightHit<F>& hit) const {
-    const F by_texels =
-        pdf_solid_angle_at(hit, receiver_, texels_.template pdf_area<F>(facet_, hit.position));
+    const F by_texels = pdf_by_texels(hit);
     if (!polygon_) return by_texels;
     return select(is_near_, (F(1) - share_) * by_texels + share_ * polygon_->pdf_solid_angle(hit), by_texels);
   }
 
  private:
+  F pdf_by_texels(const LightHit<F>& hit) const {
+    return pdf_solid_angle_at(hit, receiver_, texels_.template pdf_area<F>(facet_, hit.position));
+  }
   LightSample<F> by_texels(const LightRequest<F>& request, const F& longest_edge, const Int<F>& piece) const {
     const auto place = texels_.template sample<F>(facet_, request.u);
     const F clear = clearance<F>(place.ng, place.terms, longest_edge);

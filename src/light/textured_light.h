@@ -23,8 +23,8 @@ class TexturedLights {
   static constexpr LightPlace place = LightPlace::surface;
 
   /// By the techniques `automatic` and `transformed_cosine` a facet is sampled by its texels; where it is not
-  /// small for its distance, half of the time by solid angle, as a near point counts for more than texels
-  /// tell.
+  /// small for its distance, a share of the time by solid angle (TexelMixture), as a near point counts for
+  /// more than texels tell.
   template <class F>
   LightSample<F> sample(LightRequest<F> request) const {
     const Int<F> first = select(request.lanes, first_facet_.at(request.row), Int<F>(0));

@@ -20,13 +20,13 @@ struct WeightPilot {
 /// 65,536 pixels; there `optimal` is `power`.
 bool needs_weight_pilot(const Scene& scene, const RenderSettings& settings);
 
-/// Renders 1 pixel in 512 twice, 4 replicates of 8 samples each, without and with the control variate, and
-/// takes for each channel the coefficient that leaves the least variance, summed over the pixels: minus the
-/// covariance of image and control variate over the variance of the latter. It is made smaller by four times
-/// its own noise (as the positive-part rule of James and Stein 1961 does by once), to 0 within two standard
-/// errors of 0: a coefficient that is wrong costs more than one that is missed. None where a stop came. It
-/// depends on the scene and the integrator alone. \param settings for which needs_weight_pilot holds, with
-/// the integrator settled
+/// Renders 1 pixel in 512 (8192 at the most) twice, 4 replicates of 8 samples each, without and with the
+/// control variate, and takes for each channel the coefficient that leaves the least variance, summed over
+/// the pixels: minus the covariance of image and control variate over the variance of the latter. It is made
+/// smaller by four times its own noise (as the positive-part rule of James and Stein 1961 does by once), to 0
+/// within two standard errors of 0: a coefficient that is wrong costs more than one that is missed. None
+/// where a stop came. It depends on the scene and the integrator alone. \param settings for which
+/// needs_weight_pilot holds, with the integrator settled
 std::optional<WeightPilot> optimal_alpha_for(const Scene& scene, const RenderSettings& settings,
                                              const StopRequest* stop = nullptr);
 

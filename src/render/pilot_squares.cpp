@@ -82,7 +82,7 @@ std::optional<std::vector<Color<double>>> PilotSquares::render(const RenderSetti
   tbb::task_arena arena(std::min(threads, available_threads()));
   arena.execute(
       [&] { tbb::parallel_for(std::size_t{0}, squares_.size(), render_square, tbb::simple_partitioner{}); });
-  if (must_stop()) return std::nullopt;
+  if (must_stop() || squares_.empty()) return std::nullopt;
   return means;
 }
 

@@ -94,6 +94,8 @@ AreaLight make_area_light(const Object& description, TextureFiles& textures, std
     light.strength = Colorf{1, 1, 1} * float(scale);
     light.texture = {radiance, parameters.texture("radiance")->location};
   }
+  if (const Colorf& l = light.strength; !std::isfinite(l.r) || !std::isfinite(l.g) || !std::isfinite(l.b))
+    throw InputError(parameters.location("scale"), "'radiance' times 'scale' is more than a float can hold");
   return light;
 }
 

@@ -36,8 +36,12 @@ std::pair<double, int> texels_around(double low, double high, int size) {
 }  // namespace
 
 double ImageTexture::largest_luminance(const Vec2<double>& low, const Vec2<double>& high) const {
-  const auto [left, columns] = texels_around(low.x * width, high.x * width, width);
-  const auto [bottom, rows] = texels_around(low.y * height, high.y * height, height);
+  // Beyond the edges a clamped image is what it is there.
+  const auto inside = [&](double x, int size) {
+    return wrap == Wrap::clamp ? std::clamp(x * size, -1.0, size + 1.0) : x * size;
+  };
+  const auto [left, columns] = texels_around(inside(low.x, width), inside(high.x, width), width);
+  const auto [bottom, rows] = texels_around(inside(low.y, height), inside(high.y, height), height);
   double largest = 0;
   for (int j = 0; j < rows; ++j) {
     const float y = wrapped(float(bottom + j), height);

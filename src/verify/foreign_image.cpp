@@ -165,7 +165,11 @@ ForeignImage read_foreign_image(const ForeignFiles& files, int width, int height
     take_noise_of_layers(read_exr(files.image), files.samples_per_pixel, foreign);
   }
   if (!foreign.noise.empty())
-    for (MeanMoments& pixel : foreign.image.pixels) set_normal(pixel);
+    for (std::size_t k = 0; k < foreign.image.pixels.size(); ++k) {
+      MeanMoments& pixel = foreign.image.pixels[k];
+      if (!std::isfinite(pixel.variance) || pixel.variance < 0) foreign.is_readable[k] = false;
+      set_normal(pixel);
+    }
   return foreign;
 }
 

@@ -119,8 +119,7 @@ class Lab(CoursePages):
             most = int(slider.get_attribute("max"))
             slider.send_keys(Keys.HOME)
             low, low_sources, low_cells = self.at(name + "_are").text, self.sources(), self.cells()
-            if most == 0:
-                continue
+            self.assertGreater(most, 0)
             slider.send_keys(Keys.ARROW_RIGHT)
             self.assertEqual(slider.get_attribute("value"), "1")
             self.assertNotEqual(self.at(name + "_are").text, low)
@@ -140,9 +139,10 @@ class Lab(CoursePages):
         few = self.cells()
         slider.send_keys(Keys.END)
         ratio = (int(self.at("samples_are").text)) ** 0.5
-        for a, b in zip(few, self.cells()):
-            if "?" not in (a, b):
-                self.assertAlmostEqual(float(a) / float(b) / ratio, 1, delta=0.1)
+        both = [(a, b) for a, b in zip(few, self.cells()) if "?" not in (a, b)]
+        self.assertGreater(len(both), 10)
+        for a, b in both:
+            self.assertAlmostEqual(float(a) / float(b) / ratio, 1, delta=0.1)
 
     def test_alternative_texts_say_the_setting(self):
         self.open("lab.html")

@@ -189,7 +189,7 @@ TEST_F(CommandLine, AGoalIsReachedByAnImageThatASampleCountGivesToo) {
                 .exit_code,
             0);
   const nlohmann::json stats = json("s.json");
-  EXPECT_GT(stats.at("error").at("goal").at("within_by_bars").get<double>(), 0.3);
+  EXPECT_GT(stats.at("error").at("goal").at("reached").get<double>(), 0.3);
   const std::string samples = std::to_string(stats.at("spp").get<int>());
   ASSERT_EQ(run({"render", "scene.xml", "-o", "b.png", "--spp", samples, "--quiet"}).exit_code, 0);
   EXPECT_EQ(read_file(path("a.png")), read_file(path("b.png")));

@@ -36,6 +36,11 @@ std::string floor(std::string_view inside = diffuse_xml(0.5)) {
 std::string lamp_xml(double radiance = 1) { return diffuse_xml(0) + light_xml(radiance); }
 /// Two metres up, shining down.
 std::string lamp(double height = 2) { return rectangle_xml({0, 0, height}, 0.5 * x, -0.5 * y, lamp_xml()); }
+std::string row_of_lamps(int count) {
+  std::string all;
+  for (int k = 0; k < count; ++k) all += rectangle_xml({0.2 * k - 1, 0, 2}, 0.05 * x, -0.05 * y, lamp_xml());
+  return all;
+}
 std::string point(const Vec3d& at) {
   return fmt::format(
       "<luminaire type=\"point\"><point name=\"position\" value=\"{}\"/><color name=\"intensity\" "
@@ -144,7 +149,7 @@ std::vector<Case> cases() {
       {"MirrorsByLightSamples", camera() + floor(mirror) + lamp(), "light",
        "light-behind-glass mirrors-black"},
       {"LightNeverChosen",
-       camera() + floor() + lamp() + rectangle_xml({1, 0, 2}, 1e-5 * x, -1e-5 * y, lamp_xml()),
+       camera() + floor() + row_of_lamps(11) + rectangle_xml({1, 1, 2}, 1e-5 * x, -1e-5 * y, lamp_xml()),
        "mis",
        "light-never-chosen",
        {},
