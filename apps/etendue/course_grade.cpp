@@ -27,12 +27,15 @@ struct GradeOptions {
 
 /// What cannot even be looked at is a line of the table, too.
 json checked(const std::string& folder, const SubmissionCheckSettings& settings) {
+  const auto ended = [&](const std::exception& error) -> json {
+    return {{"folder", folder}, {"outcome", "ended"}, {"why", error.what()}, {"at", ""}};
+  };
   try {
     return check_submission(submission_in(folder), settings);
   } catch (const InputError& error) {
-    return {{"folder", folder}, {"outcome", "ended"}, {"why", error.what()}, {"at", ""}};
+    return ended(error);
   } catch (const fs::filesystem_error& error) {
-    return {{"folder", folder}, {"outcome", "ended"}, {"why", error.what()}, {"at", ""}};
+    return ended(error);
   }
 }
 

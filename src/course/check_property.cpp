@@ -73,7 +73,7 @@ Tested test_shares(const ProbeEvidence& evidence) {
     if (ray.of != ProbeOf::unshadowed || evidence.areas[ray.probe].size() < 2) continue;
     const double expected[3]{ray.expected.r, ray.expected.g, ray.expected.b};
     const double all = expected[0] + expected[1] + expected[2];
-    const double mean = ray.channels[0].mean + ray.channels[1].mean + ray.channels[2].mean;
+    const double mean = ray.sum_of_means();
     for (std::size_t c = 0; c < 3; ++c)
       tested.take(p_value(ray.shares[c], 0, allowance_of(ray)), [&] {
         return fmt::format("{}, ray {}: the {} light has {:.4f} of all, and {:.4f} is right",

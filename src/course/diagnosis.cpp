@@ -339,18 +339,14 @@ class Diagnosing {
         add(emission_missing, "what they reflect of other lights",
             fmt::format(
                 "a light that shines with {:.4g} reflects {:.4g} of another's light; it is seen with {:.4g}",
-                sum_of(ray.emitted), sum_of(ray.expected) - sum_of(ray.emitted), mean_of(ray)));
+                sum_of(ray.emitted), sum_of(ray.expected) - sum_of(ray.emitted), ray.sum_of_means()));
     }
-  }
-
-  static double mean_of(const RayEvidence& ray) {
-    return ray.channels[0].mean + ray.channels[1].mean + ray.channels[2].mean;
   }
 
   static bool reflects_nothing(const RayEvidence& ray) {
     constexpr double little = 1e-3;
     const double emitted = sum_of(ray.emitted), reflected = sum_of(ray.expected) - emitted;
-    return reflected > little * emitted && std::abs(mean_of(ray) - emitted) < 0.05 * reflected;
+    return reflected > little * emitted && std::abs(ray.sum_of_means() - emitted) < 0.05 * reflected;
   }
 
   const ProbeEvidence& evidence_;

@@ -1,7 +1,7 @@
 #include "course/lab.h"
 
 #include "course/lab_scene.h"
-#include "render/first_hits.h"
+#include "render/image_layers.h"
 #include "scene/load_scene.h"
 #include "scenefile/nori_xml.h"
 
@@ -15,14 +15,11 @@ namespace etendue {
 
 namespace {
 
-constexpr int none = LayerSet::none;
-
 /// A layer for what each light brings that was scattered.
 LayerSet layers_by_light(std::int32_t lights) {
-  LayerSet set;
+  LayerSet set = scattered_light();
   set.light_parts = lights;
   for (std::int32_t light = 0; light < lights; ++light) set.light_part.push_back(light);
-  set.path_part.fill({none, 0});
   return set;
 }
 

@@ -27,6 +27,8 @@ struct RayEvidence {
   std::array<RunningStatistics, 3> channels;
   /// Of a channel minus its expected share of the sum: of mean zero where shares are right.
   std::array<RunningStatistics, 3> shares;
+
+  double sum_of_means() const { return channels[0].mean + channels[1].mean + channels[2].mean; }
 };
 
 /// One sample, and the points on lights that it looked at.

@@ -83,21 +83,17 @@ nlohmann::json check_submission(const Submission& submission, const SubmissionCh
   result["seconds"] = compilation.seconds + ended.seconds;
   result["printed"] = ended.output;
   result["printed_bytes"] = ended.printed_bytes;
-  result["why"] = explanation(ended, limits);
-  const std::string written = written_files(of_student);
-  const auto tell_written = [&] {
-    if (written.empty()) return;
-    result["why"] = result["why"] == "" ? written : result["why"].get<std::string>() + "; " + written;
-  };
   result["at"] = text_in(folder / "at.txt");
   const nlohmann::json left = ended.is_done() ? left_in(folder) : nlohmann::json();
+  std::string why = explanation(ended, limits);
+  if (left.is_null() && why.empty()) why = "the program ended before it was done; what it printed says why";
+  if (const std::string written = written_files(of_student); !written.empty())
+    why += (why.empty() ? "" : "; ") + written;
+  result["why"] = why;
   if (left.is_null()) {
     result["outcome"] = "ended";
-    if (result["why"] == "") result["why"] = "the program ended before it was done; what it printed says why";
-    tell_written();
     return result;
   }
-  tell_written();
   result.update(left);
   result["outcome"] = left["is_right"] == true ? "right" : "wrong";
   return result;

@@ -16,10 +16,11 @@ void append_cumulative_shares(std::span<const double> weights, std::vector<std::
   }
 }
 
-void append_positive_shares(std::vector<double> weights, std::vector<std::int32_t>& shares) {
+void append_positive_shares(std::vector<double> weights, std::vector<std::int32_t>& shares,
+                            double least_share) {
   const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (double& weight : weights)
-    weight = !(total > 0) ? 1 : weight > 0 ? std::max(weight, total * 0x1p-28) : 0;
+    weight = !(total > 0) ? 1 : weight > 0 ? std::max(weight, total * least_share) : 0;
   append_cumulative_shares(weights, shares);
 }
 

@@ -19,9 +19,11 @@ inline constexpr std::int32_t inversion_whole = 1 << 30;
 /// weights are. Weights must be finite and not negative.
 void append_cumulative_shares(std::span<const double> weights, std::vector<std::int32_t>& shares);
 
-/// The same, but none of a positive weight is 0, however small it is among the others; all alike where all
+/// The same, but none of a positive weight has less than about `least_share`, in [2^-28, 1), however small it
+/// is among the others: shares are whole numbers, and what rounds to 0 would be left out. All alike where all
 /// weights are 0.
-void append_positive_shares(std::vector<double> weights, std::vector<std::int32_t>& shares);
+void append_positive_shares(std::vector<double> weights, std::vector<std::int32_t>& shares,
+                            double least_share = 0x1p-28);
 
 template <class F>
 struct InversionSample {

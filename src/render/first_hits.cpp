@@ -25,11 +25,7 @@ Colorf albedo_of(const Scene& scene, const Vertex<float>& vertex) {
 }
 
 FirstHit first_hit(const Scene& scene, int x, int y) {
-  const float x_px = float(x) + 0.5f, y_px = float(y) + 0.5f;
-  const CameraRay<float> camera_ray =
-      scene.camera.has_lens ? scene.camera.ray(x_px, y_px, Vec2<float>{0, 0}) : scene.camera.ray(x_px, y_px);
-  const Ray<float> ray{camera_ray.origin, camera_ray.direction};
-  const Hit<float> hit = closest_hit(scene, ray, camera_ray.t_near, camera_ray.t_far);
+  const auto [ray, hit] = centre_hit(scene, x, y);
   FirstHit first;
   if (hit.geometry < 0) return first;
   const Vertex<float> vertex(scene, ray, hit);
@@ -45,6 +41,14 @@ FirstHit first_hit(const Scene& scene, int x, int y) {
 }
 
 }  // namespace
+
+CentreHit centre_hit(const Scene& scene, int x, int y) {
+  const float x_px = float(x) + 0.5f, y_px = float(y) + 0.5f;
+  const CameraRay<float> camera_ray =
+      scene.camera.has_lens ? scene.camera.ray(x_px, y_px, Vec2<float>{0, 0}) : scene.camera.ray(x_px, y_px);
+  const Ray<float> ray{camera_ray.origin, camera_ray.direction};
+  return {ray, closest_hit(scene, ray, camera_ray.t_near, camera_ray.t_far)};
+}
 
 std::vector<FirstHit> first_hits(const Scene& scene) {
   const int width = scene.camera.width_px, height = scene.camera.height_px;

@@ -1,6 +1,7 @@
 // What the camera sees at the centre of each pixel: for layers that tell other tools of the scene.
 #pragma once
 
+#include "geometry/ray.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -19,6 +20,13 @@ struct FirstHit {
   Colorf albedo{0, 0, 0};
   std::int32_t shape = -1, material = -1, light = -1;  ///< Ids; -1: none.
 };
+
+struct CentreHit {
+  Ray<float> ray;
+  Hit<float> hit;
+};
+/// What the ray through the centre of a pixel, and of the lens, meets.
+CentreHit centre_hit(const Scene& scene, int x, int y);
 
 /// Of all pixels, rows from the top.
 std::vector<FirstHit> first_hits(const Scene& scene);

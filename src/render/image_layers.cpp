@@ -141,6 +141,12 @@ LayerSet technique_layers() {
   return set;
 }
 
+LayerSet scattered_light() {
+  LayerSet set;
+  set.path_part.fill({LayerSet::none, 0});
+  return set;
+}
+
 LayerSet layers_of_lights(const LayerSet& of_paths, const LightGroups& groups) {
   LayerSet set = of_paths;
   set.light_parts = std::int32_t(groups.names.size());

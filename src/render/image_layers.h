@@ -62,7 +62,10 @@ std::vector<ImageLayer> image_layers(const std::vector<std::string>& names, cons
 /// By emission (what the camera sees), light samples and BSDF samples: part 0, 1 and 2 of the paths.
 constexpr std::array<std::string_view, 3> technique_layer_names{"emission", "light", "bsdf"};
 LayerSet technique_layers();
-/// The same with each group of lights told apart.
+/// One layer of all light but that of the lights that the camera sees, which is the same by all techniques,
+/// and whose outlines are noise.
+LayerSet scattered_light();
+/// A set with each group of lights told apart.
 LayerSet layers_of_lights(const LayerSet& of_paths, const LightGroups& groups);
 
 /// "light.lamp.R", "light.lamp.stderr.R" ...: a part of the radiance that two of the layers have is there

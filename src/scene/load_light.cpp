@@ -1,6 +1,7 @@
 #include "scene/load_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 #include <limits>

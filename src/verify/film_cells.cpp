@@ -1,6 +1,6 @@
 #include "verify/film_cells.h"
 
-#include "integrator/single_sample.h"
+#include "render/first_hits.h"
 
 #include <algorithm>
 #include <map>
@@ -22,8 +22,7 @@ std::vector<std::int32_t> materials_seen(const Scene& scene) {
   std::vector<std::int32_t> seen(std::size_t(camera.width_px) * std::size_t(camera.height_px));
   tbb::parallel_for(0, camera.height_px, [&](int y) {
     for (int x = 0; x < camera.width_px; ++x) {
-      const CameraRay<float> ray = camera.ray(float(x) + 0.5f, float(y) + 0.5f);
-      const Hit<float> hit = closest_hit(scene, {ray.origin, ray.direction}, ray.t_near, ray.t_far);
+      const Hit<float> hit = centre_hit(scene, x, y).hit;
       seen[std::size_t(y) * std::size_t(camera.width_px) + std::size_t(x)] =
           hit.geometry < 0 ? -1 : scene.geometry.material[std::size_t(hit.geometry)];
     }

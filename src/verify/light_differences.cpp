@@ -1,6 +1,7 @@
 #include "verify/light_differences.h"
 
-#include "verify/moment_image.h"
+#include "render/image_layers.h"
+#include "stats/mean_moments.h"
 
 #include <algorithm>
 #include <cmath>

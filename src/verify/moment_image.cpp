@@ -11,12 +11,6 @@ MeanMoments MomentImage::sum_over(const PixelRectangle& rectangle) const {
   return sum;
 }
 
-LayerSet scattered_light() {
-  LayerSet set;
-  set.path_part.fill({LayerSet::none, 0});
-  return set;
-}
-
 MomentImage moment_image(const RenderResult& rendered) {
   MomentImage image{rendered.film.width(), rendered.film.height(), {}, rendered.replicates};
   image.pixels.reserve(std::size_t(image.width) * std::size_t(image.height));

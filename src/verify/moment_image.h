@@ -22,10 +22,6 @@ struct MomentImage {
   MeanMoments sum_over(const PixelRectangle& rectangle) const;
 };
 
-/// Of all light but that of the lights that the camera sees, which is the same by all techniques, and whose
-/// outlines are noise.
-LayerSet scattered_light();
-
 /// Of a complete render whose replicates are independent, and whose luminances were kept.
 MomentImage moment_image(const RenderResult& rendered);
 

@@ -2,6 +2,7 @@
 
 #include "base/hash.h"
 #include "lint/probe.h"
+#include "render/image_layers.h"
 #include "stats/significance.h"
 #include "verify/film_cells.h"
 #include "verify/pilot_noise.h"
