@@ -81,7 +81,7 @@ std::vector<LabNoise> noise_of(const std::vector<std::vector<Film>>& layers,
 }  // namespace
 
 LabGrid lab_grid(bool is_quick) {
-  if (is_quick) return {{0.125, 1}, {1}, {1, 16}, 48, 32};
+  if (is_quick) return {{0.125, 1}, {0.5, 1}, {1, 16}, 48, 32};
   return {{1.0 / 32, 1.0 / 8, 1, 8}, {0.5, 1, 1.5}, {1, 4, 16, 64}, 240, 160};
 }
 

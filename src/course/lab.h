@@ -19,7 +19,7 @@ struct LabGrid {
   int width, height;                                   ///< Pixels.
 };
 
-/// \param is_quick few and small pictures, to see that it works
+/// \param is_quick few and small pictures, to see that it works; each slider still has two places
 LabGrid lab_grid(bool is_quick);
 
 /// In the order of the pictures: light sampling, BSDF sampling, their average, multiple importance sampling.
