@@ -77,6 +77,7 @@ def block_means(stack):
 
 def agreement(ours, theirs):
     """Of two stacks of luminances. Equal noise-free blocks agree."""
+    ours, theirs = np.asarray(ours), np.asarray(theirs)
     (mean_a, error_a), (mean_b, error_b) = block_means(ours), block_means(theirs)
     error = np.hypot(error_a, error_b) + 1e-5 * (abs(mean_a) + abs(mean_b)) + 1e-12  # sums of floats are not exact
     z = abs(mean_a - mean_b) / error

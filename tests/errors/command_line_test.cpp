@@ -117,7 +117,7 @@ TEST_F(CommandLine, TheProgressBarFitsTheTerminal) {
     const winsize size{24, columns, 0, 0};
     ASSERT_EQ(openpty(&terminal, &end, nullptr, nullptr, &size), 0);
     Program program(
-        {"render", "scene.xml", "-o", "a.exr", "--threads", "1", "--isa", "scalar", "--spp", "64"},
+        {"render", "scene.xml", "-o", "a.exr", "--threads", "1", "--isa", "scalar", "--spp", "16"},
         folder_.path(), end);
     close(end);
     std::string seen;
@@ -449,7 +449,7 @@ TEST_F(CommandLine, SignalsAtAnyTimeLeaveAWholeImageAndTheFinishedOne) {
   std::mt19937_64 engine(17);
   const int signals[]{SIGINT, SIGTERM, SIGHUP};
   std::filesystem::create_directory(path("out"));
-  for (int k = 0; k < 50; ++k) {
+  for (int k = 0; k < 24; ++k) {
     const bool has_finished_one = k % 2 == 1;
     const std::string finished = "finished " + std::to_string(k);
     if (has_finished_one) write_file(path("out/a.exr"), finished);
@@ -592,7 +592,7 @@ TEST_F(CommandLine, AdviceIsPossible) {
 TEST_F(CommandLine, AnOutputThatFailsDoesNotTakeTheOthersWithIt) {
   std::filesystem::create_directory(path("gone"));
   Program program({"render", "scene.xml", "-o", "gone/a.exr", "-o", "b.exr", "-o", "gone/c.png", "--stats",
-                   "s.json", "--spp", "4000", "--threads", "1", "--isa", "scalar"},
+                   "s.json", "--spp", "1000", "--threads", "1", "--isa", "scalar"},
                   folder_.path());
   program.wait_until([&] { return program.err_so_far().find("samples a pixel") != std::string::npos; });
   std::filesystem::remove(path("gone"));

@@ -27,12 +27,12 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr int width = 48, height = 32, samples = 256;
+constexpr int image_width = 48, image_height = 32, samples = 256;
 
 std::string scene_xml(int times_larger) {
   return "<scene>\n<integrator type=\"mis\"/><camera type=\"perspective\"><integer name=\"width\" value=\"" +
-         std::to_string(width * times_larger) + "\"/><integer name=\"height\" value=\"" +
-         std::to_string(height * times_larger) +
+         std::to_string(image_width * times_larger) + "\"/><integer name=\"height\" value=\"" +
+         std::to_string(image_height * times_larger) +
          "\"/><float name=\"fov\" value=\"40\"/><transform name=\"toWorld\"><lookat origin=\"0 -2 5\" "
          "target=\"0 0 0\" up=\"0 1 0\"/></transform></camera>\n"
          "<shape type=\"rectangle\"><transform name=\"toWorld\"><scale value=\"3 3 1\"/></transform><bsdf "
@@ -73,7 +73,7 @@ class VerifyCommand : public testing::Test {
 
   /// R, G and B alone.
   Image colors() const {
-    Image image{width, height, {}, {}};
+    Image image{image_width, image_height, {}, {}};
     for (const char* name : {"R", "G", "B"}) image.channels.push_back(*sound_.find(name));
     return image;
   }
@@ -81,14 +81,14 @@ class VerifyCommand : public testing::Test {
   static Image made(const Image& image, const std::function<float(const Channel&, int, int)>& value) {
     Image other = image;
     for (std::size_t c = 0; c < image.channels.size(); ++c)
-      for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-          other.channels[c].values[std::size_t(y * width + x)] = value(image.channels[c], x, y);
+      for (int y = 0; y < image_height; ++y)
+        for (int x = 0; x < image_width; ++x)
+          other.channels[c].values[std::size_t(y * image_width + x)] = value(image.channels[c], x, y);
     return other;
   }
   static float at(const Channel& channel, int x, int y) {
-    x = std::clamp(x, 0, width - 1), y = std::clamp(y, 0, height - 1);
-    return channel.values[std::size_t(y * width + x)];
+    x = std::clamp(x, 0, image_width - 1), y = std::clamp(y, 0, image_height - 1);
+    return channel.values[std::size_t(y * image_width + x)];
   }
   /// With layers made from the standard errors.
   Image with_layer(const std::string& layer,
@@ -96,7 +96,7 @@ class VerifyCommand : public testing::Test {
     Image image = colors();
     for (const std::string color : {"R", "G", "B"}) {
       Channel channel{layer + "." + color, {}};
-      for (std::size_t k = 0; k < std::size_t(width * height); ++k)
+      for (std::size_t k = 0; k < std::size_t(image_width * image_height); ++k)
         channel.values.push_back(
             value(sound_.find("stderr." + color)->values[k], sound_.find(color)->values[k]));
       image.channels.push_back(channel);
@@ -156,11 +156,11 @@ TEST_F(VerifyCommand, NamesWhatWasDoneToAnImage) {
     std::function<float(const Channel&, int, int)> value;
   };
   const Case cases[]{
-      {"it is upside down", [](const Channel& c, int x, int y) { return at(c, x, height - 1 - y); }},
+      {"it is upside down", [](const Channel& c, int x, int y) { return at(c, x, image_height - 1 - y); }},
       {"it is a mirror image, left for right",
-       [](const Channel& c, int x, int y) { return at(c, width - 1 - x, y); }},
+       [](const Channel& c, int x, int y) { return at(c, image_width - 1 - x, y); }},
       {"it is turned by 180 degrees",
-       [](const Channel& c, int x, int y) { return at(c, width - 1 - x, height - 1 - y); }},
+       [](const Channel& c, int x, int y) { return at(c, image_width - 1 - x, image_height - 1 - y); }},
       {"its numbers are sRGB, not linear light",
        [&](const Channel& c, int x, int y) { return srgb(at(c, x, y)); }},
       {"it was taken for sRGB and decoded",
@@ -194,9 +194,9 @@ TEST_F(VerifyCommand, PixelsThatAreNoNumbersAreLeftOut) {
 }
 
 TEST_F(VerifyCommand, AnImageOfAnotherSizeIsBadInput) {
-  Image image{width - 1, height, {}, {}};
+  Image image{image_width - 1, image_height, {}, {}};
   for (const char* name : {"R", "G", "B"})
-    image.channels.push_back({name, std::vector<float>(std::size_t((width - 1) * height), 0.5f)});
+    image.channels.push_back({name, std::vector<float>(std::size_t((image_width - 1) * image_height), 0.5f)});
   const ProgramResult result = verify_against(image);
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("b.exr: 47 x 32 pixels, the scene's image has 48 x 32"));
@@ -209,13 +209,13 @@ void write_jpeg(const std::filesystem::path& file, const std::vector<unsigned ch
   jpeg_create_compress(&jpeg);
   std::FILE* const out = std::fopen(file.c_str(), "wb");
   jpeg_stdio_dest(&jpeg, out);
-  jpeg.image_width = width, jpeg.image_height = height;
+  jpeg.image_width = image_width, jpeg.image_height = image_height;
   jpeg.input_components = 3, jpeg.in_color_space = JCS_RGB;
   jpeg_set_defaults(&jpeg);
   jpeg_set_quality(&jpeg, 95, TRUE);
   jpeg_start_compress(&jpeg, TRUE);
-  for (int y = 0; y < height; ++y) {
-    JSAMPROW row = const_cast<JSAMPROW>(rgb.data() + std::size_t(3 * y * width));
+  for (int y = 0; y < image_height; ++y) {
+    JSAMPROW row = const_cast<JSAMPROW>(rgb.data() + std::size_t(3 * y * image_width));
     jpeg_write_scanlines(&jpeg, &row, 1);
   }
   jpeg_finish_compress(&jpeg);
@@ -229,7 +229,7 @@ TEST_F(VerifyCommand, FilesOfEightBitsAreTakenAsTheyAre) {
     const Image brighter = made(image, [&](const Channel& c, int x, int y) { return factor * at(c, x, y); });
     write_png(path("b.png"), brighter);
     std::vector<unsigned char> rgb;
-    for (std::size_t k = 0; k < std::size_t(width * height); ++k)
+    for (std::size_t k = 0; k < std::size_t(image_width * image_height); ++k)
       for (const Channel& channel : brighter.channels) {
         const float v = std::clamp(channel.values[k], 0.0f, 1.0f);
         const float srgb = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;

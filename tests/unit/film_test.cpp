@@ -12,7 +12,7 @@ namespace {
 
 using Means = std::vector<Color<double>>;
 
-Means random_means(std::size_t count, std::uint64_t seed) {
+Means uneven_means(std::size_t count, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::lognormal_distribution<double> radiance(0, 2);
   Means means(count);
@@ -55,14 +55,14 @@ TEST(Film, KnowsNoErrorOfFewerThanTwoReplicates) {
 }
 
 TEST(Film, NothingChangesNothing) {
-  const PixelStatistics some = combine_replicates(random_means(7, 1), 0);
+  const PixelStatistics some = combine_replicates(uneven_means(7, 1), 0);
   EXPECT_TRUE(same_bits(combine(some, {}), some));
   EXPECT_TRUE(same_bits(combine({}, some), some));
   EXPECT_EQ(combine_replicates({}, 3).count, 0);
 }
 
 TEST(Film, KeepsANaNInSight) {
-  Means means = random_means(8, 1);
+  Means means = uneven_means(8, 1);
   means[3].g = std::nan("");
   const PixelStatistics pixel = combine_replicates(means, 0);
   EXPECT_TRUE(std::isnan(pixel.mean.g));
@@ -81,7 +81,7 @@ TEST(Film, SplitsRangesAtTheRoundestIndex) {
 }
 
 TEST(Film, MergesShardsAtTheSplitToTheBitsOfOneRun) {
-  const Means all = random_means(80, 42);
+  const Means all = uneven_means(80, 42);
   for (std::size_t first = 0; first < all.size(); ++first) {
     for (std::size_t last = first + 2; last <= all.size(); ++last) {
       const std::size_t split = replicate_split(first, last);
@@ -93,7 +93,7 @@ TEST(Film, MergesShardsAtTheSplitToTheBitsOfOneRun) {
 }
 
 TEST(Film, MergesAlignedBlocksInATreeToTheBitsOfOneRun) {
-  const Means all = random_means(64, 43);
+  const Means all = uneven_means(64, 43);
   for (std::size_t block = 1; block < 64; block *= 2) {
     std::vector<PixelStatistics> shards;
     for (std::size_t first = 0; first < 64; first += block) shards.push_back(sum(all, first, first + block));
@@ -105,7 +105,7 @@ TEST(Film, MergesAlignedBlocksInATreeToTheBitsOfOneRun) {
 }
 
 TEST(Film, CutsElsewhereAgreeButForRounding) {
-  const Means all = random_means(64, 44);
+  const Means all = uneven_means(64, 44);
   const PixelStatistics whole = sum(all, 0, 64);
   bool any_differs = false;
   for (std::size_t cut = 1; cut < 64; ++cut) {
@@ -119,7 +119,7 @@ TEST(Film, CutsElsewhereAgreeButForRounding) {
 
 TEST(Film, DoesNotDriftOverHugeCounts) {
   // 2^27 (1.3e8) replicates: a block of 1024 doubled by combining it with itself.
-  PixelStatistics pixel = combine_replicates(random_means(1024, 45), 0);
+  PixelStatistics pixel = combine_replicates(uneven_means(1024, 45), 0);
   const PixelStatistics block = pixel;
   for (int i = 0; i < 17; ++i) pixel = combine(pixel, pixel);
   EXPECT_EQ(pixel.count, 1ll << 27);

@@ -25,7 +25,7 @@ class HdrRead : public test::ImageFileTest {
 
 /// 1, 0.5, 0.25 in red, green, blue.
 const std::string color{char(128), 64, 32, char(129)};
-std::string grey(int mantissa) { return {char(mantissa), char(mantissa), char(mantissa), char(136)}; }
+std::string grey_pixel(int mantissa) { return {char(mantissa), char(mantissa), char(mantissa), char(136)}; }
 
 TEST_F(HdrRead, PixelsShareAnExponent) {
   write(color + std::string("\0\0\0\0", 4) + std::string("\xff\x01\x80\x01", 4), "-Y 1 +X 3");
@@ -39,7 +39,7 @@ TEST_F(HdrRead, PixelsShareAnExponent) {
 TEST_F(HdrRead, RunsOfBothKinds) {
   // 300 pixels, then 2: repeats of 44 and, in a row, of 1 << 8.
   const std::string repeat{1, 1, 1};
-  write(color + repeat + char(43) + repeat + char(1) + grey(7) + grey(9), "-Y 1 +X 302");
+  write(color + repeat + char(43) + repeat + char(1) + grey_pixel(7) + grey_pixel(9), "-Y 1 +X 302");
   const ColorImage old_runs = read();
   for (std::size_t i = 0; i < 300; ++i) ASSERT_THAT(pixel(old_runs, i), ElementsAre(1, 0.5f, 0.25f)) << i;
   EXPECT_EQ(pixel(old_runs, 300)[0], 7);
@@ -63,21 +63,22 @@ TEST_F(HdrRead, ExposureAndColorCorrectionAreTakenBack) {
 }
 
 TEST_F(HdrRead, PrimariesAndXyzBecomeRec709) {
-  write(color + grey(100), "-Y 1 +X 2", "PRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329\n");
+  write(color + grey_pixel(100), "-Y 1 +X 2", "PRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329\n");
   EXPECT_THAT(pixel(read(), 0), ElementsAre(1, 0.5f, 0.25f));
-  write(color + grey(100), "-Y 1 +X 2", "PRIMARIES= 0.708 0.292 0.17 0.797 0.131 0.046 0.3333 0.3333\n");
+  write(color + grey_pixel(100), "-Y 1 +X 2",
+        "PRIMARIES= 0.708 0.292 0.17 0.797 0.131 0.046 0.3333 0.3333\n");
   EXPECT_GT(pixel(read(), 0)[0], 1.2f);
   for (const float value : pixel(read(), 1)) EXPECT_NEAR(value, 100, 1e-3);  // White is white.
   EXPECT_THAT(pixel(read({true, ""}), 0), ElementsAre(1, 0.5f, 0.25f));
   write(color, "-Y 1 +X 1", "PRIMARIES=.1 .1 .2 .2 .3 .3 .3 .3\n");
   EXPECT_THAT(error(), HasSubstr("its primaries lie on a line"));
 
-  write(grey(100) + std::string("\x40\x50\x60\x81", 4), "-Y 1 +X 2", "", "32-bit_rle_xyze");
+  write(grey_pixel(100) + std::string("\x40\x50\x60\x81", 4), "-Y 1 +X 2", "", "32-bit_rle_xyze");
   for (const float value : pixel(read(), 0)) EXPECT_NEAR(value, 100, 0.01);
   const std::vector<float> rgb = pixel(read(), 1);
   EXPECT_NEAR(0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2], 80 / 128.0,
               0.02);  // Y, but for the white.
-  write(grey(179), "-Y 1 +X 1", "EXPOSURE=0.5\n", "32-bit_rle_xyze");
+  write(grey_pixel(179), "-Y 1 +X 1", "EXPOSURE=0.5\n", "32-bit_rle_xyze");
   EXPECT_NEAR(pixel(read(), 0)[1], 2, 0.001);
   write(color, "-Y 1 +X 1", "", "spectral");
   EXPECT_THAT(error(), HasSubstr("its format 'spectral' is not supported"));
@@ -86,7 +87,7 @@ TEST_F(HdrRead, PrimariesAndXyzBecomeRec709) {
 TEST_F(HdrRead, TheEightOrientations) {
   // Stored 1 2 3 / 4 5 6, from 10 on.
   std::string pixels;
-  for (int i = 1; i <= 6; ++i) pixels += grey(10 + i);
+  for (int i = 1; i <= 6; ++i) pixels += grey_pixel(10 + i);
   for (const auto& [size, width, expected] : {std::tuple{"-Y 2 +X 3", 3, "123456"},
                                               {"-Y 2 -X 3", 3, "321654"},
                                               {"+Y 2 +X 3", 3, "456123"},

@@ -50,13 +50,13 @@ class NoriTest : public testing::Test {
 };
 
 const std::string angles = "<string name='angles' value='0, 45, 80'/>";
-const std::string grey = "<bsdf type='diffuse'><color name='albedo' value='0.5'/></bsdf>";
+const std::string grey_bsdf = "<bsdf type='diffuse'><color name='albedo' value='0.5'/></bsdf>";
 const std::string glossy =
     "<bsdf type='phong'><color name='kd' value='.3'/><color name='ks' value='.4'/><float name='n' "
     "value='30'/></bsdf>";
 
 TEST_F(NoriTest, BsdfsUnderUniformLight) {
-  const std::vector<CaseResult> results = run(ttest("0.5 0.5 0.5", angles + grey));
+  const std::vector<CaseResult> results = run(ttest("0.5 0.5 0.5", angles + grey_bsdf));
   ASSERT_EQ(results.size(), 3u);
   for (const CaseResult& result : results) {
     EXPECT_TRUE(result.is_passed);
@@ -74,7 +74,7 @@ TEST_F(NoriTest, BsdfsUnderUniformLight) {
 }
 
 TEST_F(NoriTest, AnErrorOfOnePercentFails) {
-  for (const CaseResult& result : run(ttest("0.505 0.505 0.505", angles + grey))) {
+  for (const CaseResult& result : run(ttest("0.505 0.505 0.505", angles + grey_bsdf))) {
     EXPECT_FALSE(result.is_passed);
     EXPECT_LT(result.p_value, surely_wrong);
   }
@@ -90,12 +90,15 @@ TEST_F(NoriTest, TheForksWaysToCountReferences) {
     for (const CaseResult& result : results) passed += result.is_passed;
     return std::pair(results.size(), passed);
   };
-  EXPECT_EQ(passes(".5 .5 .25 .25", "0 60", grey + dark), std::pair(std::size_t{4}, 4)) << "ETH, Tuebingen";
-  EXPECT_EQ(passes(".5 .5", "0 60", grey + grey), std::pair(std::size_t{4}, 4)) << "2012";
-  EXPECT_EQ(passes(".5 .5", "0 60 10 70", grey + grey), std::pair(std::size_t{4}, 4)) << "since 2015";
-  EXPECT_EQ(passes(".5 .25 .5 .25", "0 60", grey + dark), std::pair(std::size_t{4}, 2)) << "BSDF by BSDF";
+  EXPECT_EQ(passes(".5 .5 .25 .25", "0 60", grey_bsdf + dark), std::pair(std::size_t{4}, 4))
+      << "ETH, Tuebingen";
+  EXPECT_EQ(passes(".5 .5", "0 60", grey_bsdf + grey_bsdf), std::pair(std::size_t{4}, 4)) << "2012";
+  EXPECT_EQ(passes(".5 .5", "0 60 10 70", grey_bsdf + grey_bsdf), std::pair(std::size_t{4}, 4))
+      << "since 2015";
+  EXPECT_EQ(passes(".5 .25 .5 .25", "0 60", grey_bsdf + dark), std::pair(std::size_t{4}, 2))
+      << "BSDF by BSDF";
   const std::vector<CaseResult> own =
-      run(ttest(".5 .5", "<string name='angles' value='0 60 10 70'/>" + grey + grey));
+      run(ttest(".5 .5", "<string name='angles' value='0 60 10 70'/>" + grey_bsdf + grey_bsdf));
   EXPECT_EQ(own[3].detail, "at 70 degrees");
 }
 
@@ -124,13 +127,14 @@ TEST_F(NoriTest, EmittersAtDistances) {
 }
 
 TEST_F(NoriTest, RefusesTestsThatMakeNoSense) {
-  EXPECT_THAT(error(ttest("1 2", angles + grey)), HasSubstr("2 references for 3 angles and 1 BSDFs"));
+  EXPECT_THAT(error(ttest("1 2", angles + grey_bsdf)), HasSubstr("2 references for 3 angles and 1 BSDFs"));
   EXPECT_THAT(error(ttest("1 2", "<scene/>")), HasSubstr("2 references for 1 scenes"));
-  EXPECT_THAT(error(ttest("1", "<scene/>" + grey)), HasSubstr("several kinds"));
+  EXPECT_THAT(error(ttest("1", "<scene/>" + grey_bsdf)), HasSubstr("several kinds"));
   EXPECT_THAT(error(ttest("1", "")), HasSubstr("nothing to test"));
   EXPECT_THAT(error("<test type='ttest'/>"), HasSubstr("lacks 'references'"));
-  EXPECT_THAT(error(ttest("1", "<integer name='sampleCount' value='1'/>" + grey)), HasSubstr("at least 2"));
-  EXPECT_THAT(error(ttest("1", "<float name='significanceLevel' value='1'/>" + grey)),
+  EXPECT_THAT(error(ttest("1", "<integer name='sampleCount' value='1'/>" + grey_bsdf)),
+              HasSubstr("at least 2"));
+  EXPECT_THAT(error(ttest("1", "<float name='significanceLevel' value='1'/>" + grey_bsdf)),
               HasSubstr("between 0 and 1"));
   EXPECT_THAT(error("<test type='chi2test'/>"), HasSubstr("nothing to test"));
   EXPECT_THAT(error("<test type='chi2test'><integer name='resolution' value='0'/></test>"),
@@ -141,7 +145,7 @@ TEST_F(NoriTest, RefusesTestsThatMakeNoSense) {
 
 TEST_F(NoriTest, OneBadCaseDoesNotStopTheOthers) {
   const std::vector<CaseResult> results =
-      run(ttest(".5 .5 .5 .5 .5 .5", angles + "<bsdf type='difuse'/>" + grey));
+      run(ttest(".5 .5 .5 .5 .5 .5", angles + "<bsdf type='difuse'/>" + grey_bsdf));
   ASSERT_EQ(results.size(), 6u);
   EXPECT_TRUE(results[0].is_error);
   EXPECT_FALSE(results[0].is_passed);
@@ -224,7 +228,7 @@ TEST_F(NoriTest, ASampleThatIsNotFiniteFails) {
 TEST_F(NoriTest, SamplesOfBsdfsFollowTheirDensity) {
   for (const Dialect dialect : {Dialect::nori, Dialect::nori_2012}) {
     const std::vector<CaseResult> results =
-        run("<test type='chi2test'>" + grey + glossy +
+        run("<test type='chi2test'>" + grey_bsdf + glossy +
                 "<bsdf type='phong'><color name='ks' value='.9'/><color name='kd' value='0'/><float name='n' "
                 "value='2000'/></bsdf></test>",
             1, dialect);
@@ -294,7 +298,7 @@ TEST_F(NoriTest, ALobeTooNarrowForTheCellsIsNoMisfit) {
 
 TEST_F(NoriTest, MoreSamplesThanCanBeNumberedAreRefused) {
   const std::string start = "<test type='chi2test'><integer name='resolution' value='900'/>";
-  EXPECT_THAT(error(start + grey + "</test>"), HasSubstr("state a 'sampleCount'"));
+  EXPECT_THAT(error(start + grey_bsdf + "</test>"), HasSubstr("state a 'sampleCount'"));
 }
 
 TEST_F(NoriTest, AScenesLightsThatTheIntegratorCannotSeeAreToldOf) {

@@ -1,4 +1,5 @@
 #include "stats/running.h"
+#include "support/statistics_of.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -8,11 +9,7 @@
 namespace etendue {
 namespace {
 
-RunningStatistics statistics_of(std::initializer_list<double> values) {
-  RunningStatistics statistics;
-  for (const double value : values) statistics.add(value);
-  return statistics;
-}
+using test::statistics_of;
 
 TEST(RunningStatistics, MatchesTheTextbook) {
   const RunningStatistics s = statistics_of({2, 4, 4, 4, 5, 5, 7, 9});

@@ -3,6 +3,7 @@
 #include "stats/quantile.h"
 #include "stats/significance.h"
 #include "stats/t_test.h"
+#include "support/statistics_of.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -13,13 +14,9 @@
 namespace etendue {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using test::statistics_of;
 
-RunningStatistics statistics_of(std::initializer_list<double> values) {
-  RunningStatistics statistics;
-  for (const double value : values) statistics.add(value);
-  return statistics;
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 RunningStatistics normal_sample(std::mt19937_64& engine, int count, double mean, double deviation) {
   std::normal_distribution<double> distribution(mean, deviation);
