@@ -12,8 +12,6 @@
 namespace etendue {
 namespace {
 
-constexpr int side_px = 2;
-
 struct Worker {
   std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
   std::vector<Color<double>> means;
@@ -28,7 +26,7 @@ std::vector<PixelRectangle> squares_of(const Scene& scene, int count) {
   for (int k = 0; k < std::min(count, tiles); ++k) {
     const std::uint64_t random = hash64(std::uint64_t(k));
     const int tile = int(std::int64_t(k) * tiles / std::min(count, tiles));
-    constexpr int places = LightCut::tile_px / side_px;
+    constexpr int side_px = PilotSquares::side_px, places = LightCut::tile_px / side_px;
     const int x = tile % columns * LightCut::tile_px + side_px * int(random % places),
               y = tile / columns * LightCut::tile_px + side_px * int(random / places % places);
     if (x + side_px <= width && y + side_px <= height) squares.push_back({x, y, x + side_px, y + side_px});
@@ -60,7 +58,7 @@ std::optional<std::vector<Color<double>>> PilotSquares::render(const RenderSetti
   const Kernel& kernel = kernel_for(settings.isa);
   tbb::enumerable_thread_specific<Worker> workers;
   const auto must_stop = [&] { return stop && stop->soon.load(std::memory_order_relaxed); };
-  const auto means_of_square = std::size_t(side_px * side_px * replicates);
+  const auto means_of_square = std::size_t(pixels * replicates);
   std::vector<Color<double>> means(squares_.size() * means_of_square);
   const auto render_square = [&](std::size_t k) {
     if (must_stop()) return;

@@ -20,6 +20,8 @@ RenderSettings pilot_settings(const RenderSettings& settings, std::uint64_t seed
 
 class PilotSquares {
  public:
+  static constexpr int side_px = 2, pixels = side_px * side_px;  ///< Of a square.
+
   /// Squares of 2 x 2 pixels, each in a tile of its own that lights are chosen for; `count` at most. \param
   /// scene must outlive it \param settings name the light sampler of all renders
   PilotSquares(const Scene& scene, const RenderSettings& settings, int count);

@@ -96,12 +96,21 @@ TEST(Weights, OptimalOnesKeepTheMeanWhateverTheCoefficient) {
                        film_of(lamps.scene, integrator, Heuristic::power, 6), integrator);
 }
 
-/// A lamp close above a floor: its samples by area are noisy, and those of the BSDF often meet it.
-LoadedScene low_lamp_scene() {
-  return load_scene_text(
-      camera_xml({0, -4, 2}, {0, 0, 0.2}, 35, 256, "sobol") +
-      rectangle_xml({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, diffuse_xml(0.6)) +
-      rectangle_xml({0, 0, 0.5}, {1.2, 0, 0}, {0, -1.2, 0}, light_xml(1) + diffuse_xml(0)));
+/// A cube that shines, close above a floor: most light samples lie on sides that face away, and those of the
+/// BSDF often meet it.
+LoadedScene cube_lamp_scene() {
+  std::string sides;
+  const auto add_side = [&](const Vec3d& normal, const Vec3d& x, const Vec3d& y) {
+    constexpr double half = 0.5;
+    sides +=
+        rectangle_xml(Vec3d{0, 0, 0.6} + half * normal, half * x, half * y, light_xml(1) + diffuse_xml(0));
+  };
+  const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  add_side(x, y, z), add_side(-x, z, y);
+  add_side(y, z, x), add_side(-y, x, z);
+  add_side(z, x, y), add_side(-z, y, x);
+  return load_scene_text(camera_xml({0, -4, 2}, {0, 0, 0.2}, 35, 256, "sobol") +
+                         rectangle_xml({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, diffuse_xml(0.6)) + sides);
 }
 
 double total_variance(const Scene& scene, const Colorf& alpha) {
@@ -115,7 +124,7 @@ double total_variance(const Scene& scene, const Colorf& alpha) {
 }
 
 TEST(Weights, APilotFindsACoefficientThatLeavesLessVariance) {
-  const LoadedScene loaded = low_lamp_scene();
+  const LoadedScene loaded = cube_lamp_scene();
   RenderSettings settings = render_settings("mis", 16, 16, 0, Heuristic::optimal);
   ASSERT_TRUE(needs_weight_pilot(loaded.scene, settings));
   const std::optional<WeightPilot> pilot = optimal_alpha_for(loaded.scene, settings);
