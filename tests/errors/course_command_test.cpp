@@ -76,11 +76,11 @@ TEST_F(CourseCommand, PackTellsWhatIsLeftToDo) {
 TEST_F(CourseCommand, LabMakesAPageWithAllItsPictures) {
   const ProgramResult made = run({"course", "lab", "--quick", "-o", "lab.html"});
   EXPECT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("lab.html: 16 pictures"));
+  EXPECT_THAT(made.out, HasSubstr("lab.html: 32 pictures"));
   const std::string page = text_of("lab.html"), picture = "data:image/png;base64,iVBOR";
   int pictures = 0;
   for (std::size_t at = 0; (at = page.find(picture, at)) != std::string::npos; ++at) ++pictures;
-  EXPECT_EQ(pictures, 16);
+  EXPECT_EQ(pictures, 32);
   EXPECT_EQ(run({"course", "lab", "--quick", "-o", "nowhere/lab.html"}).exit_code, 2);
 }
 
