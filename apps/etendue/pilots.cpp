@@ -50,7 +50,11 @@ std::optional<WeightPilot> settle_weights(const RenderOptions& options, const Sc
   const std::optional<WeightPilot> pilot = optimal_alpha_for(scene, settings, &stop_request);
   if (!pilot) return pilot;
   settings.integrator = with_alpha(settings.integrator, pilot->alpha);
-  if (!options.is_quiet)
+  if (options.is_quiet) return pilot;
+  if (pilot->alpha == Colorf{0, 0, 0})
+    say("a pilot of {:.1f} s finds nothing to gain by 'optimal': weights are those of 'power'\n",
+        pilot->seconds);
+  else
     say("a pilot of {:.1f} s finds weights that leave {:.0f} % of the variance of 'power'\n", pilot->seconds,
         100 * pilot->variance_ratio);
   return pilot;

@@ -94,10 +94,11 @@ def measure(scene, ours, peers, options):
         # The first of Etendue's is held against each peer, and its own others against it.
         for index in range(1, len(rows)):
             agreed = agreement(stacks[0], stacks[index])
+            seeds = options.seeds
             if agreed.what_differs():
-                agreed = second_look(scene, entries[0], entries[index], spp)
-            rows[index]["agreement"] = {"ratio": agreed.ratio, "worst_z": agreed.worst_z, "z_limit": agreed.z_limit,
-                                        "void": agreed.what_differs()}
+                agreed, seeds = second_look(scene, entries[0], entries[index], spp), SECOND_LOOK_SEEDS
+            rows[index]["agreement"] = {"seeds": seeds, "ratio": agreed.ratio, "worst_z": agreed.worst_z,
+                                        "z_limit": agreed.z_limit, "void": agreed.what_differs()}
         result["budgets"][str(spp)] = rows
         if spp == options.budgets[0]:
             np.savez_compressed(images, **{rows[i]["renderer"] + "/" + rows[i]["setting"]: runs[i][0].image

@@ -82,10 +82,10 @@ const std::vector<Plugin>& light_sampler_plugins();
 /// names.
 std::string_view known_light_sampler(std::string_view name);
 
-/// \param name of the table \param lights at least one
 /// Of all lights: how many there are for `tree` to choose among.
 std::int64_t facet_count(const Lights& lights);
 
+/// \param name of the table; `tree` of one facet is made as `uniform` \param lights at least one
 LightSampler make_light_sampler(std::string_view name, const Lights& lights);
 
 }  // namespace etendue

@@ -105,18 +105,16 @@ std::optional<WeightPilot> optimal_alpha_for(const Scene& scene, const RenderSet
     };
     pilot.alpha = {alpha_of(&Color<double>::r), alpha_of(&Color<double>::g), alpha_of(&Color<double>::b)};
     // What a coefficient leaves is told by pixels that it is not from.
-    double without = 0, with = 0;
-    for (const std::size_t half : {0, 1}) {
-      const auto of_luminance = [&](std::size_t which) {
-        return regression_of([](const Color<double>& c) { return luminance(c); },
-                             [&](std::size_t pixel) { return pixel / PilotSquares::pixels % 2 == which; });
-      };
-      const Regression other = of_luminance(1 - half);
-      without += other.variance(0);
-      with += other.variance(of_luminance(half).alpha());
-    }
-    if (without > 0) pilot.variance_ratio = with / without;
-    if (pilot.variance_ratio * time_of_control > 1) pilot.alpha = {0, 0, 0}, pilot.variance_ratio = 1;
+    const auto half = [&](std::size_t which) {
+      return regression_of([](const Color<double>& c) { return luminance(c); },
+                           [&](std::size_t pixel) { return pixel / PilotSquares::pixels % 2 == which; });
+    };
+    const Regression halves[]{half(0), half(1)};
+    const double without = halves[0].variance(0) + halves[1].variance(0),
+                 with = halves[0].variance(halves[1].alpha()) + halves[1].variance(halves[0].alpha());
+    pilot.variance_ratio = with / without;
+    const bool pays = pilot.variance_ratio * time_of_control < 1;  // Not a number where nothing varies.
+    if (!pays || pilot.alpha == Colorf{0, 0, 0}) pilot.alpha = {0, 0, 0}, pilot.variance_ratio = 1;
   }
   pilot.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return pilot;

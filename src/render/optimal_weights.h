@@ -12,8 +12,8 @@ namespace etendue {
 
 struct WeightPilot {
   Colorf alpha;           ///< ByBoth::alpha, W/(m^2 sr).
-  double variance_ratio;  ///< Of the variance of luminance with it over that without, as the pilot tells; 1
-                          ///< where it is 0.
+  double variance_ratio;  ///< Of luminance with coefficients of halves of the pilot over that without; 1
+                          ///< where alpha is 0.
   double seconds = 0;     ///< That the pilot took.
 };
 
@@ -25,10 +25,10 @@ bool needs_weight_pilot(const Scene& scene, const RenderSettings& settings);
 /// control variate, and takes for each channel the coefficient that leaves the least variance, summed over
 /// the pixels: minus the covariance of image and control variate over the variance of the latter. It is made
 /// smaller by four times its own noise (as the positive-part rule of James and Stein 1961 does by once), to 0
-/// within two standard errors of 0: a coefficient that is wrong costs more than one that is missed. All are 0
-/// where, as one half of the pilot's pixels tells of the coefficients of the other, they save less variance
-/// than the control variate takes time. None where a stop came. It depends on the scene and the integrator
-/// alone. \param settings for which needs_weight_pilot holds, with the integrator settled
+/// within two standard errors of 0: a coefficient that is wrong costs more than one that is missed. All
+/// are set to 0 where, as each half of the pilot's squares tells of the coefficient of the other, they save
+/// less variance than the control variate takes time. None where a stop came. It depends on the scene and the
+/// integrator alone. \param settings for which needs_weight_pilot holds, with the integrator settled
 std::optional<WeightPilot> optimal_alpha_for(const Scene& scene, const RenderSettings& settings,
                                              const StopRequest* stop = nullptr);
 

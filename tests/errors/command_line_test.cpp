@@ -117,7 +117,7 @@ TEST_F(CommandLine, TheProgressBarFitsTheTerminal) {
     const winsize size{24, columns, 0, 0};
     ASSERT_EQ(openpty(&terminal, &end, nullptr, nullptr, &size), 0);
     Program program(
-        {"render", "scene.xml", "-o", "a.exr", "--threads", "1", "--isa", "scalar", "--spp", "16"},
+        {"render", "scene.xml", "-o", "a.exr", "--threads", "1", "--isa", "scalar", "--spp", "64"},
         folder_.path(), end);
     close(end);
     std::string seen;
@@ -309,9 +309,12 @@ TEST_F(CommandLine, InfoListsEveryPluginWithItsParameters) {
     }
   for (const char* name : {"light", "technique", "depth", "position", "distance", "normal", "albedo", "id",
                            "samples", "variance_share"})
-    EXPECT_TRUE(std::any_of(info.at("layers").begin(), info.at("layers").end(), [&](const nlohmann::json& layer) {
-      return layer.at("name") == name && !layer.at("meaning").get<std::string>().empty();
-    })) << name;
+    EXPECT_TRUE(std::any_of(info.at("layers").begin(), info.at("layers").end(),
+                            [&](const nlohmann::json& layer) {
+                              return layer.at("name") == name &&
+                                     !layer.at("meaning").get<std::string>().empty();
+                            }))
+        << name;
   const ProgramResult text = run({"info"});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_THAT(text.out, HasSubstr("\n  variance_share: "));
@@ -592,7 +595,7 @@ TEST_F(CommandLine, AdviceIsPossible) {
 TEST_F(CommandLine, AnOutputThatFailsDoesNotTakeTheOthersWithIt) {
   std::filesystem::create_directory(path("gone"));
   Program program({"render", "scene.xml", "-o", "gone/a.exr", "-o", "b.exr", "-o", "gone/c.png", "--stats",
-                   "s.json", "--spp", "1000", "--threads", "1", "--isa", "scalar"},
+                   "s.json", "--spp", "4000", "--threads", "1", "--isa", "scalar"},
                   folder_.path());
   program.wait_until([&] { return program.err_so_far().find("samples a pixel") != std::string::npos; });
   std::filesystem::remove(path("gone"));

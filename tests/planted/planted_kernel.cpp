@@ -18,7 +18,7 @@ enum class Bug {
   pmf_of_another_sampler,    // lights chosen by power or tree, divided by the pmf of uniform
   number_reused,             // the number that chose the light places the point too, not stretched
   light_never_chosen,        // the last light
-  tree_blind,                // tree importance 0 where light arrives: on surfaces that lean
+  tree_blind,                // tree importance 0 where light arrives: on surfaces that lean; not with one facet
   points_not_uniform,        // denser on one side of the light than the density says
   area_of_one_triangle,      // of a light of two: its light samples are worth half
   cosine_twice,              // at the receiver

@@ -34,7 +34,7 @@ Mesh read_bytes(const std::string& bytes, const Transform& world_from_object = {
   return read_ply(write_ply(bytes), world_from_object);
 }
 
-std::string error_of(const std::string& bytes, const Transform& world_from_object = {}) {
+std::string error_of_ply(const std::string& bytes, const Transform& world_from_object = {}) {
   return test::error_of([&] { read_bytes(bytes, world_from_object); });
 }
 
@@ -44,7 +44,7 @@ const std::string list = "property list uchar int vertex_indices\n";
 std::string ascii(const std::string& elements, const std::string& body) {
   return "ply\nformat ascii 1.0\n" + elements + "end_header\n" + body;
 }
-std::string square(const std::string& faces, int count) {
+std::string ply_square(const std::string& faces, int count) {
   return ascii("element vertex 4\n" + xyz + "element face " + std::to_string(count) + "\n" + list,
                "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" + faces);
 }
@@ -103,7 +103,7 @@ std::string everything(std::endian order) {
 }
 
 TEST(PlyReader, ascii_triangle) {
-  const auto mesh = read_bytes(square("3 0 1 2\n", 1));
+  const auto mesh = read_bytes(ply_square("3 0 1 2\n", 1));
   EXPECT_THAT(mesh.positions, ElementsAre(Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{1, 1, 0}));
   EXPECT_THAT(mesh.indices, ElementsAre(0, 1, 2));
   EXPECT_THAT(mesh.normals, IsEmpty());
@@ -142,7 +142,7 @@ TEST(PlyReader, names_of_uv) {
 }
 
 TEST(PlyReader, quads_and_polygons_are_split_as_of_other_formats) {
-  EXPECT_THAT(read_bytes(square("4 0 1 2 3\n", 1)).indices, ElementsAre(0, 1, 2, 3, 0, 2));
+  EXPECT_THAT(read_bytes(ply_square("4 0 1 2 3\n", 1)).indices, ElementsAre(0, 1, 2, 3, 0, 2));
   EXPECT_THAT(read_bytes(ascii("element vertex 5\n" + xyz + "element face 1\n" + list,
                                "0 0 0\n2 0 0\n3 1 0\n1 2 0\n-1 1 0\n5 0 1 2 3 4\n"))
                   .indices,
@@ -150,13 +150,13 @@ TEST(PlyReader, quads_and_polygons_are_split_as_of_other_formats) {
 }
 
 TEST(PlyReader, vertices_that_no_triangle_uses_are_left_out_and_flat_triangles_counted) {
-  const auto mesh = read_bytes(square("3 3 1 2\n3 0 0 1\n", 2));
+  const auto mesh = read_bytes(ply_square("3 3 1 2\n3 0 0 1\n", 2));
   EXPECT_THAT(mesh.positions, ElementsAre(Vec3f{0, 1, 0}, Vec3f{1, 0, 0}, Vec3f{1, 1, 0}));
   EXPECT_EQ(mesh.dropped_triangles, 1u);
 }
 
 TEST(PlyReader, line_ends_and_blanks) {
-  const std::string unix_text = square("3 0 1 2\n", 1);
+  const std::string unix_text = ply_square("3 0 1 2\n", 1);
   std::string dos, mac, wide;
   for (const char c : unix_text) {
     dos += c == '\n' ? std::string("\r\n") : std::string(1, c);
@@ -194,11 +194,11 @@ TEST(PlyReader, transform_moves_positions_and_turns_normals) {
 }
 
 TEST(PlyReaderError, header) {
-  const auto with = [](const std::string& lines) { return error_of("ply\n" + lines); };
+  const auto with = [](const std::string& lines) { return error_of_ply("ply\n" + lines); };
   const std::string format = "format ascii 1.0\n";
-  EXPECT_THAT(error_of(""), HasSubstr("the file is empty"));
+  EXPECT_THAT(error_of_ply(""), HasSubstr("the file is empty"));
   for (const char* other : {"v 0 0 0\n", "p", "ply", "plyformat ascii 1.0\n"})
-    EXPECT_THAT(error_of(other), HasSubstr("not a PLY")) << other;
+    EXPECT_THAT(error_of_ply(other), HasSubstr("not a PLY")) << other;
   EXPECT_THAT(with("format ascii 2.0\n"), AllOf(HasSubstr("header.ply:2:14: "), HasSubstr("version '2.0'")));
   EXPECT_THAT(with("format asci 1.0\n"), HasSubstr("did you mean 'ascii'?"));
   EXPECT_THAT(with(format + format), HasSubstr("a second format"));
@@ -221,22 +221,22 @@ TEST(PlyReaderError, header) {
 
 TEST(PlyReaderError, elements) {
   const std::string vertex = "element vertex 3\n" + xyz;
-  EXPECT_THAT(error_of(ascii("", "")), HasSubstr("no element 'vertex'"));
-  EXPECT_THAT(error_of(ascii(vertex, "")), HasSubstr("no face"));
-  EXPECT_THAT(error_of(ascii(vertex + "element face 0\n" + list, "0 0 0\n1 0 0\n1 1 0\n")),
+  EXPECT_THAT(error_of_ply(ascii("", "")), HasSubstr("no element 'vertex'"));
+  EXPECT_THAT(error_of_ply(ascii(vertex, "")), HasSubstr("no face"));
+  EXPECT_THAT(error_of_ply(ascii(vertex + "element face 0\n" + list, "0 0 0\n1 0 0\n1 1 0\n")),
               HasSubstr("no face"));
-  EXPECT_THAT(error_of(ascii(vertex + "element tristrips 1\n" + list, "")),
+  EXPECT_THAT(error_of_ply(ascii(vertex + "element tristrips 1\n" + list, "")),
               HasSubstr("triangle strips cannot be read"));
-  EXPECT_THAT(
-      error_of(ascii("element vertex 3\nproperty float x\nproperty float y\nelement face 1\n" + list, "")),
-      HasSubstr("the vertices have no z"));
-  EXPECT_THAT(error_of(ascii("element vertex 3\nproperty list uchar int x\nelement face 1\n" + list, "")),
+  EXPECT_THAT(error_of_ply(
+                  ascii("element vertex 3\nproperty float x\nproperty float y\nelement face 1\n" + list, "")),
+              HasSubstr("the vertices have no z"));
+  EXPECT_THAT(error_of_ply(ascii("element vertex 3\nproperty list uchar int x\nelement face 1\n" + list, "")),
               HasSubstr("'x' of a vertex is a list"));
-  EXPECT_THAT(error_of(ascii(vertex + "property float nx\nelement face 1\n" + list, "")),
+  EXPECT_THAT(error_of_ply(ascii(vertex + "property float nx\nelement face 1\n" + list, "")),
               HasSubstr("only part of a normal"));
-  EXPECT_THAT(error_of(ascii(vertex + "element face 1\nproperty int vertex_index\n", "")),
+  EXPECT_THAT(error_of_ply(ascii(vertex + "element face 1\nproperty int vertex_index\n", "")),
               HasSubstr("'vertex_index' of a face is not a list"));
-  EXPECT_THAT(error_of(ascii(vertex + "element face 1\nproperty int a\n", "")),
+  EXPECT_THAT(error_of_ply(ascii(vertex + "element face 1\nproperty int a\n", "")),
               HasSubstr("the faces do not list their vertices"));
 }
 
@@ -248,15 +248,15 @@ TEST(PlyReader, concave_faces_are_filled_and_those_that_cross_themselves_told) {
     EXPECT_GT(cross(p(1) - p(0), p(2) - p(0)).z, 0) << t;
   }
   EXPECT_TRUE(mesh.warnings.empty());
-  EXPECT_THAT(read_bytes(square("4 0 1 2 3\n4 0 2 1 3\n", 2)).warnings,
+  EXPECT_THAT(read_bytes(ply_square("4 0 1 2 3\n4 0 2 1 3\n", 2)).warnings,
               ::testing::ElementsAre(HasSubstr(".ply:15:1: face 1: this polygon crosses itself")));
 }
 
 TEST(PlyReaderError, rows_of_text) {
   const auto at = [](const char* place) { return HasSubstr(std::string("rows_of_text.ply:") + place); };
   const auto first_row = [](const std::string& row) {
-    return error_of(ascii("element vertex 4\n" + xyz + "element face 1\n" + list,
-                          row + "\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n"));
+    return error_of_ply(ascii("element vertex 4\n" + xyz + "element face 1\n" + list,
+                              row + "\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n"));
   };
   EXPECT_THAT(first_row("0 abc 0"), AllOf(at("10:3: "), HasSubstr("vertex 0: 'abc' is not a number")));
   EXPECT_THAT(first_row("0 0 nan"), AllOf(at("10:5: "), HasSubstr("'nan' is not a finite number")));
@@ -264,18 +264,20 @@ TEST(PlyReaderError, rows_of_text) {
   EXPECT_THAT(first_row("0 0 1e39"), AllOf(at("10:1: "), HasSubstr("vertex 0: 1e+39 does not fit a float")));
   EXPECT_THAT(first_row("0 0"), AllOf(at("10:4: "), HasSubstr("too few values")));
   EXPECT_THAT(first_row("0 0 0 7"), AllOf(at("10:7: "), HasSubstr("'7' is a value too many")));
-  EXPECT_THAT(error_of(square("3 0 1 4\n", 1)),
+  EXPECT_THAT(error_of_ply(ply_square("3 0 1 4\n", 1)),
               AllOf(at("14:1: "), HasSubstr("face 0: vertex 4 does not exist"), HasSubstr("4 vertices")));
-  EXPECT_THAT(error_of(square("3 0 1 -1\n", 1)), HasSubstr("vertex -1 does not exist"));
-  EXPECT_THAT(error_of(square("3 0 1 1.5\n", 1)), HasSubstr("vertex 1.5 does not exist"));
-  EXPECT_THAT(error_of(square("2 0 1\n", 1)), HasSubstr("a face of 2 vertices"));
-  EXPECT_THAT(error_of(square("-3 0 1 2\n", 1)), HasSubstr("'-3' is not the length of a list"));
-  EXPECT_THAT(error_of(square("4000000000 0 1 2\n", 1)), HasSubstr("too few values"));
-  EXPECT_THAT(error_of(square("3 0 1 2\n3 0 0 1\n", 3)),
+  EXPECT_THAT(error_of_ply(ply_square("3 0 1 -1\n", 1)), HasSubstr("vertex -1 does not exist"));
+  EXPECT_THAT(error_of_ply(ply_square("3 0 1 1.5\n", 1)), HasSubstr("vertex 1.5 does not exist"));
+  EXPECT_THAT(error_of_ply(ply_square("2 0 1\n", 1)), HasSubstr("a face of 2 vertices"));
+  EXPECT_THAT(error_of_ply(ply_square("-3 0 1 2\n", 1)), HasSubstr("'-3' is not the length of a list"));
+  EXPECT_THAT(error_of_ply(ply_square("4000000000 0 1 2\n", 1)), HasSubstr("too few values"));
+  EXPECT_THAT(error_of_ply(ply_square("3 0 1 2\n3 0 0 1\n", 3)),
               HasSubstr("the file ends after 2 of 3 rows of element 'face'"));
-  EXPECT_THAT(error_of(square("3 0 1 2\n3 0 0 1\n", 1)), AllOf(at("15:1: "), HasSubstr("the file goes on")));
-  EXPECT_THAT(error_of(square("3 0 1 1\n", 1)), AllOf(at("14:1: "), HasSubstr("no triangle has an area")));
-  EXPECT_THAT(error_of(square("3 0 1 1\n3 0 1 2\n", 2), scaling({1e10, 1e10, 1})),
+  EXPECT_THAT(error_of_ply(ply_square("3 0 1 2\n3 0 0 1\n", 1)),
+              AllOf(at("15:1: "), HasSubstr("the file goes on")));
+  EXPECT_THAT(error_of_ply(ply_square("3 0 1 1\n", 1)),
+              AllOf(at("14:1: "), HasSubstr("no triangle has an area")));
+  EXPECT_THAT(error_of_ply(ply_square("3 0 1 1\n3 0 1 2\n", 2), scaling({1e10, 1e10, 1})),
               AllOf(at("15:1: "), HasSubstr("face 1: a triangle too large")));
 }
 
@@ -284,7 +286,7 @@ TEST(PlyReaderError, normals_without_direction) {
                                "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n" +
                                list;
   const std::string vertices = "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 0\n0 1 0 0 0 1\n";
-  EXPECT_THAT(error_of(ascii(elements, vertices + "3 0 1 2\n")),
+  EXPECT_THAT(error_of_ply(ascii(elements, vertices + "3 0 1 2\n")),
               AllOf(HasSubstr("direction.ply:15:1: "), HasSubstr("vertex 2: its normal has no direction")));
   EXPECT_EQ(read_bytes(ascii(elements, vertices + "3 0 1 3\n")).triangle_count(), 1u);
 }
@@ -305,7 +307,7 @@ bool is_read(const std::string& bytes) {
 }
 
 TEST(PlyReaderError, cut_anywhere) {
-  const std::string files[] = {square("3 0 1 2\n4 0 1 2 3\n", 2), everything(std::endian::little),
+  const std::string files[] = {ply_square("3 0 1 2\n4 0 1 2 3\n", 2), everything(std::endian::little),
                                everything(std::endian::big)};
   for (const auto& file : files) {
     EXPECT_TRUE(is_read(file));
@@ -315,7 +317,7 @@ TEST(PlyReaderError, cut_anywhere) {
 }
 
 TEST(PlyReaderError, one_bit_wrong_anywhere) {
-  for (auto file : {square("3 0 1 2\n4 0 1 2 3\n", 2), everything(std::endian::little)})
+  for (auto file : {ply_square("3 0 1 2\n4 0 1 2 3\n", 2), everything(std::endian::little)})
     for (std::size_t k = 0; k < 8 * file.size(); ++k) {
       SCOPED_TRACE(k);
       file[k / 8] ^= char(1 << k % 8);
@@ -329,18 +331,18 @@ TEST(PlyReaderError, claims_cost_no_memory) {
   const std::string vertices = "element vertex 3\n" + xyz;
   for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     const std::string start = "ply\nformat " + format + " 1.0\n";
-    EXPECT_THAT(error_of(start + vertex + faces + "end_header\n1 2 3\n"), HasSubstr("4000000000 rows"));
-    EXPECT_THAT(error_of(start + "element other 18446744073709551615\n" + xyz + vertex + faces +
-                         "end_header\n1 2 3\n"),
+    EXPECT_THAT(error_of_ply(start + vertex + faces + "end_header\n1 2 3\n"), HasSubstr("4000000000 rows"));
+    EXPECT_THAT(error_of_ply(start + "element other 18446744073709551615\n" + xyz + vertex + faces +
+                             "end_header\n1 2 3\n"),
                 HasSubstr("18446744073709551615 rows"));
-    EXPECT_THAT(error_of(start + "element vertex 4294967295\n" + xyz + faces + "end_header\n"),
+    EXPECT_THAT(error_of_ply(start + "element vertex 4294967295\n" + xyz + faces + "end_header\n"),
                 HasSubstr("more than 4294967294 vertices"));
   }
   Bytes file(std::endian::little);
   file << "ply\nformat binary_little_endian 1.0\n" + vertices +
               "element face 1\nproperty list uint uint vertex_indices\nend_header\n" + std::string(36, '\0');
   file.add(4000000000u).add(0u).add(0u);
-  EXPECT_THAT(error_of(file.text), HasSubstr("the file ends after 0 of 1 rows of element 'face'"));
+  EXPECT_THAT(error_of_ply(file.text), HasSubstr("the file ends after 0 of 1 rows of element 'face'"));
 }
 
 TEST(PlyReaderError, binary_rows) {
@@ -351,7 +353,7 @@ TEST(PlyReaderError, binary_rows) {
   const auto face = [&](std::int8_t length, std::int32_t last) {
     Bytes with = file;
     with.add(length).add(0).add(1).add(last);
-    return error_of(with.text);
+    return error_of_ply(with.text);
   };
   EXPECT_EQ(face(3, 2), "");
   EXPECT_THAT(face(3, 3), AllOf(HasSubstr("rows.ply: face 0: vertex 3 does not exist")));
@@ -359,12 +361,12 @@ TEST(PlyReaderError, binary_rows) {
   EXPECT_THAT(face(-3, 2), HasSubstr("a list of -3 entries"));
   Bytes endless = file;
   endless.add(std::int8_t(3)).add(0).add(1).add(2).add(7);
-  EXPECT_THAT(error_of(endless.text), HasSubstr("4 bytes are left"));
+  EXPECT_THAT(error_of_ply(endless.text), HasSubstr("4 bytes are left"));
   const float infinite = INFINITY;
   Bytes bad(std::endian::big);
   bad << file.text.substr(0, file.text.size() - 4);
   bad.add(infinite).add(std::int8_t(3)).add(0).add(1).add(2);
-  EXPECT_THAT(error_of(bad.text), HasSubstr("vertex 2: inf is not a finite number"));
+  EXPECT_THAT(error_of_ply(bad.text), HasSubstr("vertex 2: inf is not a finite number"));
 }
 
 TEST(PlyReaderData, files_of_others) {
