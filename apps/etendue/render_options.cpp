@@ -132,8 +132,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
           .add_option(
               "--error", options.relative_error,
               "As many samples as it takes for errors (with --confidence) to be at most this share of a "
-              "pixel "
-              "(or of 1 % of the image's mean, where that is more): 0.01. Pilots tell; --spp is the most")
+              "pixel (or of 1 % of the image's mean, where that is more): 0.01. Pilots tell; --spp is the "
+              "most")
           ->check(positive_number())
           ->excludes(replicates);
   command

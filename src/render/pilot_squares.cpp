@@ -18,7 +18,8 @@ struct Worker {
   InvalidSamples invalid;
 };
 
-/// Scattered over the image.
+/// One in a tile, at equal distances in the order of tiles: where these divide a row of tiles, squares stand
+/// in a few columns.
 std::vector<PixelRectangle> squares_of(const Scene& scene, int count) {
   const int width = scene.camera.width_px, height = scene.camera.height_px;
   const int columns = LightCuts::tiles_across(width), tiles = columns * LightCuts::tiles_across(height);

@@ -1,4 +1,4 @@
-// Small squares of pixels, scattered over the image, which pilots render to decide how the rest is.
+// Small squares of pixels, here and there in the image, which pilots render to decide how the rest is.
 #pragma once
 
 #include "lightsampler/light_cuts.h"
