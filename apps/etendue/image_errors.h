@@ -24,6 +24,6 @@ struct ImageErrors {
 };
 
 ImageErrors errors_of(const RenderResult& result, const RenderSettings& settings,
-                      const std::vector<Region>& regions, double confidence);
+                      const std::vector<ImageRegion>& regions, double confidence);
 
 }  // namespace etendue::app

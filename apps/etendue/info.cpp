@@ -30,7 +30,7 @@ std::string_view type_name(Parameter::Type type) {
   return names[std::size_t(type)];
 }
 
-Json describe(const Plugin& plugin) {
+Json plugin_json(const Plugin& plugin) {
   Json parameters = Json::array();
   for (const Parameter& parameter : plugin.parameters)
     parameters.push_back({{"name", parameter.name},
@@ -43,15 +43,15 @@ Json describe(const Plugin& plugin) {
   return {{"name", plugin.name}, {"meaning", plugin.meaning}, {"parameters", parameters}};
 }
 
-Json describe(const std::vector<Plugin>& plugins) {
+Json plugins_json(const std::vector<Plugin>& plugins) {
   Json all = Json::array();
-  for (const Plugin& plugin : plugins) all.push_back(describe(plugin));
+  for (const Plugin& plugin : plugins) all.push_back(plugin_json(plugin));
   return all;
 }
 
 /// With what each does that no option changes, on one line; of one that only a file can name, nothing.
 Json describe_integrators() {
-  Json all = describe(integrator_plugins());
+  Json all = plugins_json(integrator_plugins());
   for (Json& plugin : all) {
     const auto& parameters = plugin["parameters"];
     if (std::none_of(parameters.begin(), parameters.end(),
@@ -79,17 +79,17 @@ Json describe_program() {
   json["threads"] = available_threads();
   json["dependencies"] = dependency_versions();
   json["integrators"] = describe_integrators();
-  json["light_samplers"] = describe(light_sampler_plugins());
-  json["samplers"] = describe(sampler_plugins());
-  json["cameras"] = describe(camera_plugins());
-  json["filters"] = describe(filter_plugins());
-  json["shapes"] = describe(shape_plugins());
-  json["bsdfs"] = describe(bsdf_plugins());
-  json["textures"] = describe(texture_plugins());
-  json["media"] = describe(medium_plugins());
-  json["phases"] = describe(phase_plugins());
-  json["lights"] = describe(light_plugins());
-  json["tests"] = describe(test_plugins());
+  json["light_samplers"] = plugins_json(light_sampler_plugins());
+  json["samplers"] = plugins_json(sampler_plugins());
+  json["cameras"] = plugins_json(camera_plugins());
+  json["filters"] = plugins_json(filter_plugins());
+  json["shapes"] = plugins_json(shape_plugins());
+  json["bsdfs"] = plugins_json(bsdf_plugins());
+  json["textures"] = plugins_json(texture_plugins());
+  json["media"] = plugins_json(medium_plugins());
+  json["phases"] = plugins_json(phase_plugins());
+  json["lights"] = plugins_json(light_plugins());
+  json["tests"] = plugins_json(test_plugins());
   for (const KnownLayer& layer : known_layers())
     json["layers"].push_back({{"name", layer.name}, {"meaning", layer.meaning}});
   return json;

@@ -12,7 +12,7 @@ namespace etendue::app {
 
 namespace {
 
-Region region_from_text(const std::string& text) {
+ImageRegion region_from_text(const std::string& text) {
   const auto fail = [&] {
     throw InputError(
         fmt::format("--region {}: not of the form NAME=X0,Y0,X1,Y1, such as shadow=10,20,30,40 for pixels 10 "
@@ -34,10 +34,10 @@ Region region_from_text(const std::string& text) {
 
 }  // namespace
 
-std::vector<Region> regions_of(const std::vector<std::string>& texts, int width_px, int height_px) {
-  std::vector<Region> regions;
+std::vector<ImageRegion> regions_of(const std::vector<std::string>& texts, int width_px, int height_px) {
+  std::vector<ImageRegion> regions;
   for (const std::string& text : texts) {
-    const Region region = region_from_text(text);
+    const ImageRegion region = region_from_text(text);
     const PixelRectangle& pixels = region.pixels;
     if (pixels.x_begin < 0 || pixels.y_begin < 0 || pixels.x_end > width_px || pixels.y_end > height_px)
       throw InputError(fmt::format("--region {}: it reaches out of the image of {} x {} pixels", text,
@@ -47,7 +47,7 @@ std::vector<Region> regions_of(const std::vector<std::string>& texts, int width_
       throw InputError(
           fmt::format("--region {}: no pixel is in it; X1 and Y1 are one beyond the last", text));
     const bool is_taken = std::any_of(regions.begin(), regions.end(),
-                                      [&](const Region& other) { return other.name == region.name; });
+                                      [&](const ImageRegion& other) { return other.name == region.name; });
     if (is_taken || region.name == "image")
       throw InputError(fmt::format("--region {}: '{}' is the name of {}", text, region.name,
                                    is_taken ? "another region" : "the whole image"));

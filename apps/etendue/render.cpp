@@ -77,7 +77,7 @@ int run(const RenderOptions& options) {
   IntegratorSettings asked_for = integrator_asked_for();
   settings.integrator = settled(asked_for, loaded.scene.lights);
   if (settings.integrator.needs_lights()) check_has_light(description, loaded.scene);
-  const std::vector<Region> regions =
+  const std::vector<ImageRegion> regions =
       regions_of(options.regions, loaded.scene.camera.width_px, loaded.scene.camera.height_px);
   const RenderLayers layers = render_layers(options, loaded.scene.lights, settings);
   check_settings(settings);

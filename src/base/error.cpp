@@ -67,7 +67,7 @@ struct Place {
 
 /// Counts on from the place before where that is earlier in the same file: warnings come in the file's order,
 /// and thousands of them would read it from its start thousands of times.
-Place place_of(const Location& where) {
+Place marked_place(const Location& where) {
   struct Mark {
     std::weak_ptr<const SourceFile> source;
     std::size_t offset = 0;
@@ -92,7 +92,7 @@ Place place_of(const Location& where) {
 /// The line of `where` and a line with the caret under it.
 std::string excerpt(const Location& where) {
   const std::string_view text = where.source->text;
-  const Place place = place_of(where);
+  const Place place = marked_place(where);
   const std::size_t begin = place.line_begin;
   // Only what can be shown is laid out: a file of one line may have millions of characters.
   const std::size_t reach = 4 * excerpt_width;
@@ -158,7 +158,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 LineColumn line_and_column(const Location& where) {
-  return has_text(where) ? place_of(where).at : LineColumn{0, 0};
+  return has_text(where) ? marked_place(where).at : LineColumn{0, 0};
 }
 
 std::string format_message(const Location& where, std::string_view problem, std::string_view hint) {

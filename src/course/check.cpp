@@ -52,8 +52,8 @@ json rays_of(const IntegratorCheck& check) {
 }  // namespace
 
 bool IntegratorCheck::is_right() const {
-  return std::ranges::none_of(properties,
-                              [](const CheckedProperty& one) { return one.verdict == Verdict::wrong; });
+  return std::ranges::none_of(
+      properties, [](const CheckedProperty& one) { return one.verdict == PropertyVerdict::wrong; });
 }
 
 IntegratorCheck check_module(const std::filesystem::path& module_file, const CheckSettings& settings) {

@@ -138,7 +138,7 @@ class Judging {
 
   bool add(const char* name, const Tested& tested, const char* all_is_well) {
     const bool is_bad = is_wrong(tested);
-    properties_.push_back({name, is_bad ? Verdict::wrong : Verdict::right,
+    properties_.push_back({name, is_bad ? PropertyVerdict::wrong : PropertyVerdict::right,
                            is_bad ? tested.worst : all_is_well, tested.tests, tested.p});
     return !is_bad;
   }
@@ -151,7 +151,7 @@ class Judging {
     bool is_any = false;
     CheckedProperty& property = properties_.back();
     property.what = bright_ones(evidence_, is_dark, is_any);
-    property.verdict = is_any ? Verdict::wrong : Verdict::cannot_tell;
+    property.verdict = is_any ? PropertyVerdict::wrong : PropertyVerdict::cannot_tell;
     if (!is_any) property.what = "what is wrong everywhere hides it; what must be black is";
   }
 
@@ -162,14 +162,15 @@ class Judging {
                  (ray.channels[0].mean == 0 && ray.channels[1].mean == 0 && ray.channels[2].mean == 0);
         });
     if (is_black)
-      properties_.push_back({"light shares", Verdict::cannot_tell, "no light has arrived"});
+      properties_.push_back({"light shares", PropertyVerdict::cannot_tell, "no light has arrived"});
     else
       add("light shares", test_shares(evidence_), "each light has its share");
   }
 
   void add_exact(const char* name, std::int64_t bad, const std::string& what,
                  const std::string& all_is_well) {
-    properties_.push_back({name, bad > 0 ? Verdict::wrong : Verdict::right, bad > 0 ? what : all_is_well});
+    properties_.push_back(
+        {name, bad > 0 ? PropertyVerdict::wrong : PropertyVerdict::right, bad > 0 ? what : all_is_well});
   }
 
   void add_sampler() {
@@ -180,14 +181,15 @@ class Judging {
     else if (evidence_.numbers_shared_with_bsdf > 0)
       what = fmt::format("in {} of {} samples one number served a light's point and the BSDF's sample",
                          evidence_.numbers_shared_with_bsdf, evidence_.samples_recorded);
-    properties_.push_back({"use of the sampler", what.empty() ? Verdict::right : Verdict::wrong,
+    properties_.push_back({"use of the sampler",
+                           what.empty() ? PropertyVerdict::right : PropertyVerdict::wrong,
                            what.empty() ? "all numbers are the sampler's" : what});
   }
 
   void add_threads() {
     if (evidence_.not_repeated > 0)
       properties_.push_back(
-          {"thread safety", Verdict::cannot_tell, "what one thread does cannot be repeated"});
+          {"thread safety", PropertyVerdict::cannot_tell, "what one thread does cannot be repeated"});
     else
       add_exact("thread safety", evidence_.not_alike_in_threads,
                 fmt::format("{} samples came out otherwise while other threads ran: something is shared that "
@@ -203,13 +205,13 @@ class Judging {
 
 }  // namespace
 
-std::string_view verdict_name(Verdict verdict) {
+std::string_view verdict_name(PropertyVerdict verdict) {
   switch (verdict) {
-    case Verdict::right:
+    case PropertyVerdict::right:
       return "right";
-    case Verdict::wrong:
+    case PropertyVerdict::wrong:
       return "wrong";
-    case Verdict::cannot_tell:
+    case PropertyVerdict::cannot_tell:
       break;
   }
   return "cannot tell";

@@ -9,12 +9,12 @@
 
 namespace etendue {
 
-enum class Verdict { right, wrong, cannot_tell };
-std::string_view verdict_name(Verdict verdict);  ///< "right", "wrong", "cannot tell".
+enum class PropertyVerdict { right, wrong, cannot_tell };
+std::string_view verdict_name(PropertyVerdict verdict);  ///< "right", "wrong", "cannot tell".
 
 struct CheckedProperty {
   std::string name;  ///< "light shares".
-  Verdict verdict = Verdict::right;
+  PropertyVerdict verdict = PropertyVerdict::right;
   std::string what;        ///< What was found, with numbers.
   std::int64_t tests = 0;  ///< Statistical ones; 0: the property is not statistical.
   double p_value = 1;      ///< The smallest of them.

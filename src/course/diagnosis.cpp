@@ -14,7 +14,7 @@ namespace {
 using enum MistakeClass;
 
 template <class T>
-double sum_of(const Color<T>& c) {
+double sum_of_channels(const Color<T>& c) {
   return double(c.r) + double(c.g) + double(c.b);
 }
 
@@ -72,7 +72,7 @@ std::string ratio_of_probe(const ProbeEvidence& evidence, std::size_t probe) {
   double mean = 0, expected = 0, error_sq = 0;
   for (const RayEvidence& ray : evidence.rays) {
     if (ray.probe != probe || ray.is_light) continue;
-    expected += sum_of(ray.expected);
+    expected += sum_of_channels(ray.expected);
     for (const RunningStatistics& channel : ray.channels) {
       mean += channel.mean;
       error_sq += channel.count > 1 ? channel.variance() / double(channel.count) : 0;
@@ -214,7 +214,7 @@ class Diagnosing {
     for (const TermMistake* one : result_.fit.mistakes) {
       std::string evidence = fmt::format("{} of {} wrong samples come out so, up to rounding; {}",
                                          percent(result_.share_explained), fits_.wrong, ratios(evidence_));
-      if (one->mistake == visibility) evidence = text_of_shadow_rays(evidence_) + evidence;
+      if (one->mistake == visibility_term) evidence = text_of_shadow_rays(evidence_) + evidence;
       add(one->mistake, std::string(one->how), evidence);
     }
     // Where the BSDF is sampled too, the factor may be what one of two techniques counts for.
@@ -229,7 +229,7 @@ class Diagnosing {
   /// Black samples fit where shadow rays are what made them so.
   bool explains_black(const TermFit& fit) const {
     return std::ranges::any_of(fit.mistakes,
-                               [](const TermMistake* one) { return one->mistake == visibility; }) &&
+                               [](const TermMistake* one) { return one->mistake == visibility_term; }) &&
            evidence_.rays_to_visible > 0;
   }
 
@@ -316,22 +316,22 @@ class Diagnosing {
     double rest = 0, count = 0;
     for (const SampleEvidence& sample : samples_) {
       if (sample.ray != ray) continue;
-      rest += sum_of(sample.value) - sum_of(predicted(sample, result_.fit));
+      rest += sum_of_channels(sample.value) - sum_of_channels(predicted(sample, result_.fit));
       ++count;
     }
-    return rest / (count * sum_of(evidence_.rays[ray].emitted));
+    return rest / (count * sum_of_channels(evidence_.rays[ray].emitted));
   }
 
   void find_in_emission() {
     for (std::size_t i = 0; i < evidence_.rays.size(); ++i) {
       const RayEvidence& ray = evidence_.rays[i];
-      if (sum_of(ray.emitted) == 0 || has(nothing_returned)) continue;
+      if (sum_of_channels(ray.emitted) == 0 || has(nothing_returned)) continue;
       constexpr double alike = 1e-2;
       const double share = share_of_emission(i);
       if (std::abs(share) < alike)
         add(emission_missing, "they are black",
-            fmt::format("a light that shines with {:.4g} is seen with {:.4g}", sum_of(ray.emitted),
-                        share * sum_of(ray.emitted)));
+            fmt::format("a light that shines with {:.4g} is seen with {:.4g}", sum_of_channels(ray.emitted),
+                        share * sum_of_channels(ray.emitted)));
       else if (std::isfinite(share) && std::abs(share - 1) > alike &&
                std::abs(share / result_.fit.factor - 1) > alike)
         result_.is_unknown = true;  // As bright as neither itself nor the factor of all makes it.
@@ -339,13 +339,14 @@ class Diagnosing {
         add(emission_missing, "what they reflect of other lights",
             fmt::format(
                 "a light that shines with {:.4g} reflects {:.4g} of another's light; it is seen with {:.4g}",
-                sum_of(ray.emitted), sum_of(ray.expected) - sum_of(ray.emitted), ray.sum_of_means()));
+                sum_of_channels(ray.emitted), sum_of_channels(ray.expected) - sum_of_channels(ray.emitted),
+                ray.sum_of_means()));
     }
   }
 
   static bool reflects_nothing(const RayEvidence& ray) {
     constexpr double little = 1e-3;
-    const double emitted = sum_of(ray.emitted), reflected = sum_of(ray.expected) - emitted;
+    const double emitted = sum_of_channels(ray.emitted), reflected = sum_of_channels(ray.expected) - emitted;
     return reflected > little * emitted && std::abs(ray.sum_of_means() - emitted) < 0.05 * reflected;
   }
 

@@ -27,13 +27,13 @@ std::string group_of(const json& result) {
   return result.contains("group") ? std::to_string(result["group"].get<int>()) : "";
 }
 
-double sum_of(const Rubric& rubric, const json& result) {
+double sum_of_points(const Rubric& rubric, const json& result) {
   double sum = 0;
   for (const RubricPart& part : rubric) sum += points_of(part, result);
   return sum;
 }
 
-std::string name_of(const json& result) {
+std::string student_name(const json& result) {
   return std::filesystem::path(result["folder"].get<std::string>()).filename().string();
 }
 
@@ -51,11 +51,11 @@ std::string grade_csv(const Rubric& rubric, const std::vector<json>& results) {
   for (const RubricPart& part : rubric) csv += fmt::format(",{} ({:g})", csv_field(part.title), part.points);
   csv += ",sum so far,found\n";
   for (const json& result : results) {
-    csv += fmt::format("{},{},{}", csv_field(name_of(result)), group_of(result),
+    csv += fmt::format("{},{},{}", csv_field(student_name(result)), group_of(result),
                        result["outcome"].get<std::string>());
     for (const RubricPart& part : rubric)
       csv += part.is_written ? "," : fmt::format(",{:g}", points_of(part, result));
-    csv += fmt::format(",{:g},{}\n", sum_of(rubric, result), csv_field(found_in(result)));
+    csv += fmt::format(",{:g},{}\n", sum_of_points(rubric, result), csv_field(found_in(result)));
   }
   return csv;
 }
@@ -72,13 +72,13 @@ std::string grade_page(const Rubric& rubric, const std::vector<json>& results,
     const json& result = results[i];
     const std::string outcome = result["outcome"].get<std::string>();
     html += fmt::format("<tr><td><a href=\"{}\">{}</a></td><td>{}</td><td class=\"{}\">{}</td>",
-                        html_text(reports[i]), html_text(name_of(result)), group_of(result),
+                        html_text(reports[i]), html_text(student_name(result)), group_of(result),
                         outcome == "right" ? "right" : "wrong", outcome);
     for (const RubricPart& part : rubric)
       html += part.is_written ? "<td class=\"quiet\">to read</td>"
                               : fmt::format("<td>{:g}</td>", points_of(part, result));
-    html +=
-        fmt::format("<td>{:g}</td><td>{}</td></tr>\n", sum_of(rubric, result), html_text(found_in(result)));
+    html += fmt::format("<td>{:g}</td><td>{}</td></tr>\n", sum_of_points(rubric, result),
+                        html_text(found_in(result)));
   }
   return html +
          "</table></div>\n<p class=\"quiet\">Written answers are a person's to read. Whether two groups "

@@ -77,7 +77,7 @@ fs::path make_pdf(const Submission& submission, std::vector<std::string>& proble
   return pdf;
 }
 
-std::string text_of(const fs::path& file) {
+std::string text_of_file(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -92,9 +92,9 @@ HandIn pack(const Submission& submission) {
   const std::optional<int> group = group_number(submission.source());
   if (!group || *group == 0)
     result.problems.emplace_back("light_integrator.cpp has no group number yet: #define GROUP_NUMBER");
-  if (text_of(submission.text()) == text_of(exercise_named("ex3").files / "readme.md"))
+  if (text_of_file(submission.text()) == text_of_file(exercise_named("ex3").files / "readme.md"))
     result.problems.emplace_back("readme.md is as it came: nothing is filled in");
-  else if (group.value_or(0) != 0 && text_of(submission.text()).find("\nGroup: 0 ") != std::string::npos)
+  else if (group.value_or(0) != 0 && text_of_file(submission.text()).find("\nGroup: 0 ") != std::string::npos)
     result.problems.emplace_back(
         fmt::format("readme.md still says 'Group: 0', and light_integrator.cpp has group {}", *group));
   try {

@@ -9,7 +9,7 @@ namespace etendue {
 namespace {
 
 template <class T>
-T* value_of(Object& object, std::string_view name) {
+T* value_to_change(Object& object, std::string_view name) {
   for (Property& property : object.properties)
     if (property.name == name) return std::get_if<T>(&property.value);
   return nullptr;
@@ -18,14 +18,14 @@ T* value_of(Object& object, std::string_view name) {
 bool is_phong(const Object& object) { return object.family == "bsdf" && object.type == "phong"; }
 
 void change_size(Object& mesh, Object& luminaire, double factor) {
-  if (auto* to_world = value_of<Transform>(mesh, "toWorld"))
+  if (auto* to_world = value_to_change<Transform>(mesh, "toWorld"))
     *to_world = *to_world * scaling({factor, factor, factor});
-  if (auto* radiance = value_of<Colorf>(luminaire, "radiance"))
+  if (auto* radiance = value_to_change<Colorf>(luminaire, "radiance"))
     *radiance = *radiance * float(1 / (factor * factor));
 }
 
 void change_exponent(Object& phong, double factor) {
-  if (auto* exponent = value_of<double>(phong, "n")) *exponent *= factor;
+  if (auto* exponent = value_to_change<double>(phong, "n")) *exponent *= factor;
 }
 
 }  // namespace
@@ -34,8 +34,8 @@ SceneDesc changed_plates(SceneDesc description, const LabChange& change) {
   for (Object& child : description.root.children) {
     if (child.family == "sampler") child.type = "independent";
     if (child.family == "camera") {
-      if (auto* width = value_of<int>(child, "width")) *width = change.width;
-      if (auto* height = value_of<int>(child, "height")) *height = change.height;
+      if (auto* width = value_to_change<int>(child, "width")) *width = change.width;
+      if (auto* height = value_to_change<int>(child, "height")) *height = change.height;
     }
     for (Object& part : child.children) {
       if (part.family == "luminaire") change_size(child, part, change.size_factor);

@@ -16,7 +16,7 @@ enum class MistakeClass {
   foreign_random_numbers,
   number_used_twice,
   light_never_chosen,
-  visibility,
+  visibility_term,
   receiver_cosine_of_other_angle,
   receiver_cosine_not_clamped,
   light_cosine_sign,

@@ -49,9 +49,9 @@ Placing any_placing(Numbers& numbers) {
 }
 
 /// Shapes and rays in the probe's own world, where receivers lie about the origin and look up.
-class Builder {
+class ProbeBuilder {
  public:
-  Builder(Probe& probe, const Placing& placing) : probe_(probe), placing_(placing) {}
+  ProbeBuilder(Probe& probe, const Placing& placing) : probe_(probe), placing_(placing) {}
 
   struct Surface {
     std::string bsdf = R"(<bsdf type="diffuse"><color name="albedo" value="0, 0, 0"/></bsdf>)";
@@ -145,7 +145,8 @@ std::vector<Vec3d> square(double half, double z) {
 }
 
 /// Rays to places on the ground, from above.
-void rays_to_ground(Builder& builder, Numbers& numbers, int count, double radius, double distance = 0.3) {
+void rays_to_ground(ProbeBuilder& builder, Numbers& numbers, int count, double radius,
+                    double distance = 0.3) {
   for (int i = 0; i < count; ++i) {
     const double turn = numbers.between(0, 2 * std::numbers::pi), far = radius * numbers.between(0.2, 1);
     const double view = numbers.between(0, 2 * std::numbers::pi), slope = numbers.between(0.2, 1.6);
@@ -158,7 +159,7 @@ constexpr Colorf red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1}, violet{0.5f, 0, 0.
 
 /// Lights of other areas and corners about the ground. Each has a colour of its own, so that a colour's mean
 /// is a light's.
-void lights_around(Builder& builder, Numbers& numbers, const std::vector<Colorf>& colors) {
+void lights_around(ProbeBuilder& builder, Numbers& numbers, const std::vector<Colorf>& colors) {
   constexpr int corners[]{5, 3, 8, 4};
   const double start = numbers.between(0, 2 * std::numbers::pi);
   for (std::size_t i = 0; i < colors.size(); ++i) {
@@ -172,7 +173,7 @@ void lights_around(Builder& builder, Numbers& numbers, const std::vector<Colorf>
   }
 }
 
-void one_light(Builder& builder, Numbers& numbers) {
+void one_light(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.7, 0.5, 0.3)});
   const double height = numbers.between(0.8, 1.5), half = numbers.between(0.25, 0.5);
   const Vec3d center{numbers.between(-0.4, 0.4), numbers.between(-0.4, 0.4), height};
@@ -183,19 +184,19 @@ void one_light(Builder& builder, Numbers& numbers) {
   builder.ray({1.1, numbers.between(-0.3, 0.3), 0}, {0.05, 0, 1}, 2.8);
 }
 
-void several_lights(Builder& builder, Numbers& numbers) {
+void several_lights(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = phong(numbers.between(5, 15))});
   lights_around(builder, numbers, {red, green, blue, violet});
   rays_to_ground(builder, numbers, 5, 0.6);
 }
 
-void three_lights(Builder& builder, Numbers& numbers) {
+void three_lights(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.4, 0.6, 0.8)});
   lights_around(builder, numbers, {red, green, blue});
   rays_to_ground(builder, numbers, 4, 0.6);
 }
 
-void facing_away(Builder& builder, Numbers& numbers) {
+void facing_away(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.6, 0.7, 0.5)});
   const auto light = [&](const Vec3d& center, const Vec3d& normal, const Colorf& color) {
     builder.polygon(about(center, normal, 0.35, 5, numbers.between(0, 6)), {.radiance = color * 8.0f});
@@ -211,7 +212,7 @@ void facing_away(Builder& builder, Numbers& numbers) {
 }
 
 /// The ground's shading normals lean over: what is low on one side is below their horizon.
-void leaning_normals(Builder& builder, Numbers& numbers) {
+void leaning_normals(ProbeBuilder& builder, Numbers& numbers) {
   const double lean = numbers.between(0.6, 0.8);
   const Vec3d normal{std::sin(lean), 0, std::cos(lean)};
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.8, 0.7, 0.6)}, std::vector<Vec3d>(4, normal));
@@ -226,7 +227,7 @@ void leaning_normals(Builder& builder, Numbers& numbers) {
                 {numbers.between(0.2, 0.8), numbers.between(-0.6, 0.6), 1}, 0.3);
 }
 
-void blocker(Builder& builder, Numbers& numbers) {
+void blocker(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.5, 0.6, 0.7)});
   const auto light = [&](const Vec3d& center, double radius, const Colorf& color) {
     builder.polygon(about(center, -center, radius, 4, 0.6), {.radiance = color * 12.0f});
@@ -242,7 +243,7 @@ void blocker(Builder& builder, Numbers& numbers) {
 }
 
 /// A small light hides a part of a large one.
-void light_before_light(Builder& builder, Numbers& numbers) {
+void light_before_light(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.7, 0.6, 0.5)});
   const double height = numbers.between(0.6, 0.8);
   builder.polygon(about({0, 0, 2 * height}, {0, 0, -1}, 0.5, 6, 0.2), {.radiance = red * 15.0f});
@@ -255,7 +256,7 @@ void light_before_light(Builder& builder, Numbers& numbers) {
 }
 
 /// Light of two flat halves, whose vertex normals want to be round.
-void coarse_curved_light(Builder& builder, Numbers& numbers) {
+void coarse_curved_light(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.6, 0.6, 0.6)});
   const double z = numbers.between(0.7, 1), rise = numbers.between(0.35, 0.5), half = 0.5;
   const Vec3d down{0, 0, -1}, left = normalize(Vec3d{-rise, 0, -half}),
@@ -274,7 +275,7 @@ void coarse_curved_light(Builder& builder, Numbers& numbers) {
 }
 
 /// A light that stands on the ground; some places lie in its plane to the bit, so this probe is not turned.
-void touching_light(Builder& builder, Numbers& numbers) {
+void touching_light(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2, 0), {.bsdf = diffuse(0.5, 0.5, 0.5)});
   builder.polygon({{0, -0.5, 0}, {0, 0.5, 0}, {0, 0.5, 0.75}, {0, -0.5, 0.75}}, {.radiance = {4, 6, 8}});
   builder.ray({numbers.between(0.2, 0.3), numbers.between(-0.4, 0.4), 0}, {0.5, 0, 1}, 0.2);
@@ -282,7 +283,7 @@ void touching_light(Builder& builder, Numbers& numbers) {
   for (const double y : {-1.0, 0.75, 1.25}) builder.ray({0, y, 0}, {0, 0.25, 1}, 0.5);
 }
 
-void lights_in_view(Builder& builder, Numbers& numbers) {
+void lights_in_view(ProbeBuilder& builder, Numbers& numbers) {
   builder.polygon(square(2.5, 0), {.bsdf = diffuse(0.5, 0.5, 0.5)});
   const Vec3d first{-0.5, numbers.between(-0.2, 0.2), 1}, second{0.7, numbers.between(-0.2, 0.2), 1.2};
   // Each reflects some of the other's light.
@@ -304,7 +305,7 @@ std::vector<Probe> make_probes(std::uint64_t seed) {
     const char *name, *what;
     ProbeOf of;
     bool has_blockers;
-    void (*build)(Builder&, Numbers&);
+    void (*build)(ProbeBuilder&, Numbers&);
     bool is_turned = true;
   };
   static constexpr Kind kinds[]{
@@ -333,7 +334,7 @@ std::vector<Probe> make_probes(std::uint64_t seed) {
     probe.what = kind.what;
     probe.of = kind.of;
     probe.has_blockers = kind.has_blockers;
-    Builder builder(probe, kind.is_turned ? any_placing(numbers) : Placing{});
+    ProbeBuilder builder(probe, kind.is_turned ? any_placing(numbers) : Placing{});
     kind.build(builder, numbers);
     builder.finish({0.3, -3.2, 2.4});
   }

@@ -18,7 +18,9 @@ namespace etendue {
 
 namespace {
 
-bool is_finite(const Colorf& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
+bool is_finite_color(const Colorf& c) {
+  return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
+}
 
 bool is_same(const Colorf& a, const Colorf& b) {
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
@@ -178,12 +180,12 @@ class Gathering {
       const Colorf value =
           index < settings_.recorded_per_ray ? first_values_[begin + std::size_t(index)] : sample(i, index);
       ++evidence_.samples_in_all;
-      if (!is_finite(value) || value.r < 0 || value.g < 0 || value.b < 0) {
-        ++(is_finite(value) ? evidence_.negative : evidence_.invalid);
+      if (!is_finite_color(value) || value.r < 0 || value.g < 0 || value.b < 0) {
+        ++(is_finite_color(value) ? evidence_.negative : evidence_.invalid);
         if (evidence_.first_invalid.empty())
           evidence_.first_invalid = fmt::format("{}, ray {}: {:.4g}, {:.4g}, {:.4g}",
                                                 probes_[ray.probe].probe.name, i, value.r, value.g, value.b);
-        if (!is_finite(value)) continue;
+        if (!is_finite_color(value)) continue;
       }
       const double channels[3]{value.r, value.g, value.b}, sum = channels[0] + channels[1] + channels[2];
       for (std::size_t c = 0; c < 3; ++c) {

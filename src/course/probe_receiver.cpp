@@ -9,9 +9,9 @@ namespace etendue {
 
 namespace {
 
-using Corners = std::array<Vec3<double>, 3>;
+using ReceiverTriangle = std::array<Vec3<double>, 3>;
 
-Corners triangle_of(const Geometry& geometry, std::int32_t mesh, std::int32_t triangle) {
+ReceiverTriangle receiver_triangle(const Geometry& geometry, std::int32_t mesh, std::int32_t triangle) {
   const auto first = 3 * std::size_t(geometry.first_triangle[std::size_t(mesh)] + triangle);
   const auto corner = [&](std::size_t k) {
     return widen(geometry.positions[std::size_t(geometry.indices[first + k])]);
@@ -19,7 +19,9 @@ Corners triangle_of(const Geometry& geometry, std::int32_t mesh, std::int32_t tr
   return {corner(0), corner(1), corner(2)};
 }
 
-double area_of(const Corners& c) { return 0.5 * length(cross(c[1] - c[0], c[2] - c[0])); }
+double receiver_triangle_area(const ReceiverTriangle& c) {
+  return 0.5 * length(cross(c[1] - c[0], c[2] - c[0]));
+}
 
 /// Cells along an edge of a triangle: more where shadows have edges.
 constexpr int cells_free = 48, cells_with_rays = 96;
@@ -36,7 +38,7 @@ LoadedProbe::LoadedProbe(const Probe& of, const std::filesystem::path& folder)
     mesh_of_light.push_back(mesh);
     double area = 0;
     for (std::int32_t k = 0; k < geometry.triangles[std::size_t(mesh)]; ++k)
-      area += area_of(triangle_of(geometry, mesh, k));
+      area += receiver_triangle_area(receiver_triangle(geometry, mesh, k));
     light_areas.push_back(area);
   }
 }
@@ -62,7 +64,7 @@ LightPointFacts ProbeReceiver::unshadowed_facts(std::int32_t mesh, const Vec3f& 
   const nori::Mesh& light = *probe_.scene.getMeshes()[std::size_t(mesh)];
   f.radiance = from_student(light.getLuminaire()->getColor());
   f.area = probe_.light_areas[std::size_t(f.light)];
-  f.first_triangle_area = area_of(triangle_of(geometry, mesh, 0));
+  f.first_triangle_area = receiver_triangle_area(receiver_triangle(geometry, mesh, 0));
   f.triangle_count = geometry.triangles[std::size_t(mesh)];
 
   const Vec3<double> from = widen(from_student(hit_.p)), along = widen(position) - from;
@@ -118,10 +120,10 @@ ExpectedRadiance ProbeReceiver::expected() const {
     if (!is_surface_) break;
     const double light_area = probe_.light_areas[std::size_t(probe_.light_of_mesh[std::size_t(mesh)])];
     for (std::int32_t k = 0; k < geometry.triangles[std::size_t(mesh)]; ++k) {
-      const Corners c = triangle_of(geometry, mesh, k);
+      const ReceiverTriangle c = receiver_triangle(geometry, mesh, k);
       const Vec3<double> u = (c[1] - c[0]) / double(cells), v = (c[2] - c[0]) / double(cells);
       const Vec3f ng = narrow(normalize(cross(u, v)));
-      const double cell_area = area_of(c) / (double(cells) * cells);
+      const double cell_area = receiver_triangle_area(c) / (double(cells) * cells);
       // Each cell is a triangle: the upright ones, and those between, upside down.
       for (int i = 0; i < cells; ++i)
         for (int j = 0; i + j < cells; ++j)

@@ -56,7 +56,7 @@ constexpr sock_filter skip_unless_set(std::uint32_t bits, std::uint8_t skipped) 
   return BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, bits, 0, skipped);
 }
 constexpr std::uint32_t refused = SECCOMP_RET_ERRNO | EPERM;
-constexpr std::uint32_t unknown = SECCOMP_RET_ERRNO | ENOSYS;
+constexpr std::uint32_t unknown_call = SECCOMP_RET_ERRNO | ENOSYS;
 
 /// Rules for system calls, in order; of a fixed size, as it is made after a fork.
 class CallFilter {
@@ -96,7 +96,7 @@ bool filter_calls(pid_t self, bool may_start_programs) {
     filter.refuse(SYS_vfork);
     // Threads are made by clone with a flag that can be seen; that of clone3 cannot, and libraries do
     // without.
-    filter.add({skip_unless(SYS_clone3, 1), answer(unknown)});
+    filter.add({skip_unless(SYS_clone3, 1), answer(unknown_call)});
     filter.allow_only(SYS_clone, skip_unless_set(CLONE_THREAD, 1));
     // A signal to itself is allowed: abort() is one.
     filter.allow_only(SYS_kill, skip_unless(std::uint32_t(self), 1));

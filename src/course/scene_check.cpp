@@ -99,7 +99,7 @@ SceneCheck check_scene(const StudentModule& module, const std::string& integrato
             rows = (lights.film.height() + block_px - 1) / block_px;
   SceneCheck check;
   CheckedProperty& property = check.property;
-  property = {"scene " + scene.stem().string(), Verdict::right, "", 3LL * columns * rows, 1};
+  property = {"scene " + scene.stem().string(), PropertyVerdict::right, "", 3LL * columns * rows, 1};
   double ratio_students = 0, ratio_lights = 0, error_sq = 0;
   int wrong_blocks = 0;
   for (int row = 0; row < rows; ++row)
@@ -119,7 +119,7 @@ SceneCheck check_scene(const StudentModule& module, const std::string& integrato
       }
       wrong_blocks += is_wrong;
     }
-  if (wrong_blocks > 0 || students.invalid.count() > 0) property.verdict = Verdict::wrong;
+  if (wrong_blocks > 0 || students.invalid.count() > 0) property.verdict = PropertyVerdict::wrong;
   property.what = fmt::format(
       "{} of {} blocks differ from the program's; brightness over all is {:.4f} +- {:.2g} of it",
       wrong_blocks, columns * rows, ratio_students / ratio_lights, std::sqrt(error_sq) / ratio_lights);

@@ -20,7 +20,7 @@ std::array<Vec3f, 3> corners(const Geometry& geometry, std::size_t triangle) {
 
 Vec3<double> in_double(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
-double area_of(const std::array<Vec3f, 3>& triangle) {
+double triangle_area(const std::array<Vec3f, 3>& triangle) {
   const Vec3<double> origin = in_double(triangle[0]);
   return 0.5 * length(cross(in_double(triangle[1]) - origin, in_double(triangle[2]) - origin));
 }
@@ -39,7 +39,7 @@ SurfaceSampling::SurfaceSampling(const Geometry& geometry, std::int32_t id) : ge
   } else {
     std::vector<double> areas;
     for (std::int32_t k = 0; k < geometry.triangles[row]; ++k)
-      areas.push_back(area_of(corners(geometry, std::size_t(geometry.first_triangle[row] + k))));
+      areas.push_back(triangle_area(corners(geometry, std::size_t(geometry.first_triangle[row] + k))));
     for (const double one : areas) area += one;
     triangles_ = make_alias_table(areas);
   }

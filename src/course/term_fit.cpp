@@ -8,7 +8,7 @@ namespace etendue {
 
 namespace {
 
-double sum_of(const Colorf& c) { return double(c.r) + c.g + c.b; }
+double channel_sum(const Colorf& c) { return double(c.r) + c.g + c.b; }
 
 /// Samples that are compared: a receiver's, of finite value, with points on lights.
 struct Compared {
@@ -34,7 +34,7 @@ std::int64_t misses(std::span<const Compared> compared, const TermFit& fit) {
 double missing_factor(std::span<const Compared> compared, const TermFit& fit) {
   std::vector<double> ratios;
   for (const Compared& one : compared) {
-    const double found = sum_of(one.sample->value), expected = sum_of(predicted(*one.sample, fit));
+    const double found = channel_sum(one.sample->value), expected = channel_sum(predicted(*one.sample, fit));
     if (std::abs(found) > 1e-5 * one.scale && std::abs(expected) > 1e-5 * one.scale)
       ratios.push_back(found / expected);
   }
@@ -113,7 +113,7 @@ TermFits fit_terms(const ProbeEvidence& evidence, std::span<const SampleEvidence
   for (const SampleEvidence& sample : samples) {
     const RayEvidence& ray = evidence.rays[sample.ray];
     const double scale = ray.expected.r + ray.expected.g + ray.expected.b;
-    if (!sample.points.empty() && !ray.is_light && std::isfinite(sum_of(sample.value)))
+    if (!sample.points.empty() && !ray.is_light && std::isfinite(channel_sum(sample.value)))
       compared.push_back({&sample, scale});
   }
   TermFits fits;

@@ -13,7 +13,7 @@
 namespace etendue {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_check = std::numeric_limits<double>::quiet_NaN();
 
 /// Sums over pixels of the squared differences between neighbouring groups of 1, 2, 4 ... replicates. Their
 /// ratio says how the error of a mean falls, also where replicates are not independent.
@@ -41,7 +41,7 @@ class GroupDifferences {
   double slope() const {
     double count = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t level = 0; level < levels_; ++level) {
-      if (!(sums_[level] > 0)) return unknown;
+      if (!(sums_[level] > 0)) return unknown_check;
       const double at = double(level), value = 0.5 * std::log2(sums_[level]);
       count += 1;
       x += at;
@@ -49,7 +49,7 @@ class GroupDifferences {
       xx += at * at;
       xy += at * value;
     }
-    return count < 2 ? unknown : (xy - x * y / count) / (xx - x * x / count);
+    return count < 2 ? unknown_check : (xy - x * y / count) / (xx - x * x / count);
   }
 
  private:
@@ -94,7 +94,7 @@ std::int64_t ConvergenceChecks::pixels_tested() const {
 
 ConvergenceChecks convergence_checks(const Film& film, const ReplicateLuminances& luminances,
                                      const PixelRectangle& region) {
-  ConvergenceChecks checks{unknown, unknown, unknown, unknown};
+  ConvergenceChecks checks{unknown_check, unknown_check, unknown_check, unknown_check};
   const std::int64_t replicates = film.at(region.x_begin, region.y_begin).count;
   if (!luminances.is_kept() || replicates < 2) return checks;
   constexpr int batches_across = 4;  // Of interleaved pixels: their slopes tell how well the slope is known.

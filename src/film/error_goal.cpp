@@ -26,7 +26,7 @@ struct PixelErrors {
 
 /// So many pixels that are as their bars say stand beside those that are looked at, which may be few.
 constexpr double pixels_as_told = 16;
-constexpr std::ptrdiff_t window = 4;
+constexpr std::ptrdiff_t window_over_beyond = 4;
 
 }  // namespace
 
@@ -70,7 +70,8 @@ DistanceFromGoal distance_from(const RenderedTwice& images, const ErrorGoal& goa
   const auto beyond =
       std::clamp<std::ptrdiff_t>(std::ptrdiff_t((1 - goal.share) * double(count)), 0, count - 1);
   const double told = pixels[std::size_t(beyond)].variance;
-  const std::ptrdiff_t first = beyond / window, last = std::min(count, window * (beyond + 1));
+  const std::ptrdiff_t first = beyond / window_over_beyond,
+                       last = std::min(count, window_over_beyond * (beyond + 1));
   double differences = 0, variances = 0;
   for (std::ptrdiff_t i = first; i < last; ++i) {
     differences += pixels[std::size_t(i)].squared_difference;

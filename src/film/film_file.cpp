@@ -79,9 +79,9 @@ class Writer {
   ContentHash hash_;
 };
 
-class Reader {
+class FilmFileReader {
  public:
-  explicit Reader(const std::filesystem::path& file)
+  explicit FilmFileReader(const std::filesystem::path& file)
       : file_(file), stream_(std::fopen(file.c_str(), "rbe"), std::fclose) {
     if (!stream_) fail(std::generic_category().message(errno));
     std::error_code error;
@@ -133,7 +133,7 @@ class Reader {
   ContentHash hash_;
 };
 
-void read_magic_and_version(Reader& in) {
+void read_magic_and_version(FilmFileReader& in) {
   std::array<char, magic.size()> start{};
   in.bytes(start.data(), std::min<std::uint64_t>(start.size(), in.left()));
   if (std::string_view(start.data(), start.size()) != magic)
@@ -143,7 +143,7 @@ void read_magic_and_version(Reader& in) {
         fmt::format("its format is version {}, and this program reads version {}", version, format_version));
 }
 
-FilmBlock read_block(Reader& in, int width, int height) {
+FilmBlock read_block(FilmFileReader& in, int width, int height) {
   const auto first = in.number<std::uint64_t>(), last = in.number<std::uint64_t>();
   FilmBlock block{first, last, Film(width, height)};
   for (int y = 0; y < height; ++y)
@@ -206,7 +206,7 @@ void write_film(const std::filesystem::path& file, const FilmState& state) {
 }
 
 FilmState read_film(const std::filesystem::path& file) {
-  Reader in(file);
+  FilmFileReader in(file);
   read_magic_and_version(in);
   const auto width = in.number<std::uint32_t>(), height = in.number<std::uint32_t>();
   FilmOrigin origin;

@@ -33,7 +33,7 @@ const Plugin mitchell_plugin{"rfilter",
                               {"C", Type::real, "0.333333333333333333", "", "Ringing, 0 to 1"}},
                              {}};
 
-double positive(const Parameters& parameters, std::string_view name) {
+double positive_length(const Parameters& parameters, std::string_view name) {
   const double value = parameters.real(name);
   if (value <= 0)
     throw InputError(parameters.location(name), fmt::format("'{}' is {}; it must be positive", name, value),
@@ -140,16 +140,17 @@ PixelFilter PixelFilter::mitchell(double radius_px, double b, double c) {
 
 PixelFilter make_filter(const Object& description, std::vector<UnreadKey>& unread) {
   if (description.type == "box")
-    return PixelFilter::box(positive({description, box_plugin, unread}, "radius"));
+    return PixelFilter::box(positive_length({description, box_plugin, unread}, "radius"));
   if (description.type == "tent")
-    return PixelFilter::tent(positive({description, tent_plugin, unread}, "radius"));
+    return PixelFilter::tent(positive_length({description, tent_plugin, unread}, "radius"));
   if (description.type == "gaussian") {
     const Parameters parameters(description, gaussian_plugin, unread);
-    return PixelFilter::gaussian(positive(parameters, "radius"), positive(parameters, "stddev"));
+    return PixelFilter::gaussian(positive_length(parameters, "radius"),
+                                 positive_length(parameters, "stddev"));
   }
   if (description.type == "mitchell") {
     const Parameters parameters(description, mitchell_plugin, unread);
-    return PixelFilter::mitchell(positive(parameters, "radius"), unit_interval(parameters, "B"),
+    return PixelFilter::mitchell(positive_length(parameters, "radius"), unit_interval(parameters, "B"),
                                  unit_interval(parameters, "C"));
   }
   throw unknown_plugin(description, filter_plugins());

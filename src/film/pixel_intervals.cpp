@@ -14,7 +14,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr int reach = 2;  ///< Pixels to each side.
-constexpr int window = (2 * reach + 1) * (2 * reach + 1);
+constexpr int most_pooled = (2 * reach + 1) * (2 * reach + 1);
 
 /// Standard error of the mean luminance.
 double luminance_error(const PixelStatistics& pixel, std::span<const float> replicates) {
@@ -112,8 +112,8 @@ std::vector<PixelInterval> pixel_intervals(const Film& film, const ReplicateLumi
     throw std::domain_error("pixel_intervals: the confidence must lie in (0, 1)");
   constexpr float own_holds_from = 0.75f, near_holds_from = 0.5f;
   const Planes planes(film, luminances, allocation);
-  std::array<float, window + 1> quantiles{};  // By the number of pixels in the pool.
-  for (int pixels = 1; pixels <= window; ++pixels)
+  std::array<float, most_pooled + 1> quantiles{};  // By the number of pixels in the pool.
+  for (int pixels = 1; pixels <= most_pooled; ++pixels)
     quantiles[std::size_t(pixels)] =
         float(student_t_quantile((1 + confidence) / 2, double(pixels * (planes.replicates - 1))));
   std::vector<PixelInterval> intervals(std::size_t(film.width()) * std::size_t(film.height()));

@@ -35,7 +35,7 @@ struct MaterialRun {
 };
 
 /// The statements of a file.
-struct Statements : ObjectParts {
+struct ObjStatements : ObjectParts {
   std::vector<Face> faces;
   std::vector<Corner> corners;
   std::vector<MaterialRun> runs{{{}, 0}};
@@ -47,7 +47,7 @@ class Parser {
   explicit Parser(std::shared_ptr<const SourceFile> source)
       : source_(std::move(source)), cursor_(source_->text, 0) {}
 
-  Statements parse() {
+  ObjStatements parse() {
     cursor_.accept('\xEF') && cursor_.accept('\xBB') && cursor_.accept('\xBF');  // the byte order mark
     while (!cursor_.at_end()) {
       cursor_.skip_blanks();
@@ -187,7 +187,7 @@ class Parser {
 
   std::shared_ptr<const SourceFile> source_;
   ObjCursor cursor_;
-  Statements read_;
+  ObjStatements read_;
 };
 
 /// Numbers anew, from 0 and in the order of their first use, some of what a file lists.
@@ -240,7 +240,7 @@ struct UsedParts {
 /// Puts the faces together, once it is known what the file has.
 class Assembler {
  public:
-  Assembler(std::shared_ptr<const SourceFile> source, Statements read)
+  Assembler(std::shared_ptr<const SourceFile> source, ObjStatements read)
       : source_(std::move(source)), read_(std::move(read)) {
     for (const auto& corner : read_.corners) {
       has_uvs_ |= corner.uv != none;
@@ -380,7 +380,7 @@ class Assembler {
   }
 
   std::shared_ptr<const SourceFile> source_;
-  Statements read_;
+  ObjStatements read_;
   std::set<std::string> materials_;  ///< That are named, with faces or without.
   bool has_uvs_ = false, has_normals_ = false;
 };

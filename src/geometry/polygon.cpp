@@ -11,7 +11,7 @@ namespace etendue {
 namespace {
 
 using Polygon = std::span<const Vec3<double>>;
-using Corners = std::vector<std::array<std::uint32_t, 3>>;
+using TriangleCorners = std::vector<std::array<std::uint32_t, 3>>;
 
 /// Of lengths: what a float does not tell from 0, as in MeshBuilder.
 constexpr double rounding = 0x1p-21;
@@ -26,7 +26,7 @@ void triangulate_quad(Polygon p, PolygonTriangles& triangles) {
   if (triangles.is_simple) triangles.corners.assign({{1, 2, 3}, {0, 1, 3}});
 }
 
-void make_fan(Polygon p, Corners& corners) {
+void make_fan(Polygon p, TriangleCorners& corners) {
   corners.clear();
   for (std::uint32_t k = 1; k + 1 < p.size(); ++k) corners.push_back({0, k, k + 1});
 }
@@ -73,7 +73,7 @@ std::vector<Vec2<double>> drop(Polygon p, const Vec3<double>& normal) {
 }
 
 /// GEOS, which few files need, takes longer to load than the rest of the program.
-bool triangulate_in_plane(std::span<const Vec2<double>> polygon, Corners& corners) {
+bool triangulate_in_plane(std::span<const Vec2<double>> polygon, TriangleCorners& corners) {
   static const auto function = reinterpret_cast<decltype(&etendue_triangulate_in_plane)>(
       module_entry("plane_polygon", "etendue_triangulate_in_plane"));
   return function(polygon, corners);

@@ -10,7 +10,7 @@ namespace etendue {
 namespace {
 
 /// Of the size of a mesh, from which it is told; as lint does for what reading rounds.
-constexpr double worth_telling = 1e-2;
+constexpr double rounding_worth_telling = 1e-2;
 
 constexpr std::array axes{&Vec3<double>::x, &Vec3<double>::y, &Vec3<double>::z};
 
@@ -35,7 +35,7 @@ std::string float_rounding_in_file(const std::vector<Vec3<double>>& positions) {
     size_sq += side * side;
   }
   const double size = std::sqrt(size_sq), rounding = farthest * 0x1p-24;
-  if (!(size > 0) || !(rounding > worth_telling * size)) return {};
+  if (!(size > 0) || !(rounding > rounding_worth_telling * size)) return {};
   // Coordinates near 0 say nothing: they are on the finer grid there.
   for (const auto axis : axes)
     for (const Vec3<double>& position : positions)

@@ -7,7 +7,7 @@
 namespace etendue {
 namespace {
 
-using Column = std::array<double, 3>;
+using ColorVector = std::array<double, 3>;
 
 ColorMatrix product(const ColorMatrix& a, const ColorMatrix& b) {
   ColorMatrix result{};
@@ -17,8 +17,8 @@ ColorMatrix product(const ColorMatrix& a, const ColorMatrix& b) {
   return result;
 }
 
-Column product(const ColorMatrix& a, const Column& b) {
-  Column result{};
+ColorVector product(const ColorMatrix& a, const ColorVector& b) {
+  ColorVector result{};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < 3; ++k) result[i] += a[i][k] * b[k];
   return result;
@@ -37,10 +37,10 @@ ColorMatrix inverse(const ColorMatrix& m) {
   return result;
 }
 
-ColorMatrix diagonal(const Column& d) { return {{{d[0], 0, 0}, {0, d[1], 0}, {0, 0, d[2]}}}; }
+ColorMatrix diagonal(const ColorVector& d) { return {{{d[0], 0, 0}, {0, d[1], 0}, {0, 0, d[2]}}}; }
 
 /// Of luminance 1.
-Column xyz_of_white(const Vec2<double>& white) {
+ColorVector xyz_of_white(const Vec2<double>& white) {
   if (!(white.y > 0)) throw Unreadable("its white point has no luminance");
   return {white.x / white.y, 1, (1 - white.x - white.y) / white.y};
 }
@@ -60,9 +60,9 @@ ColorMatrix xyz_from_rgb(const Chromaticities& space) {
 ColorMatrix adaptation(const Vec2<double>& from, const Vec2<double>& to) {
   constexpr ColorMatrix bradford{
       {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
-  const Column cones_from = product(bradford, xyz_of_white(from)),
-               cones_to = product(bradford, xyz_of_white(to));
-  Column gain;
+  const ColorVector cones_from = product(bradford, xyz_of_white(from)),
+                    cones_to = product(bradford, xyz_of_white(to));
+  ColorVector gain;
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(cones_from[k] > 0)) throw Unreadable("its white point is no colour");
     gain[k] = cones_to[k] / cones_from[k];
@@ -87,8 +87,8 @@ std::optional<ColorMatrix> rec709_from(const Chromaticities& from) {
 
 void convert_colors(const ColorMatrix& matrix, std::span<float> rgb) {
   for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
-    const Column stored{rgb[i], rgb[i + 1], rgb[i + 2]};
-    const Column color = product(matrix, stored);
+    const ColorVector stored{rgb[i], rgb[i + 1], rgb[i + 2]};
+    const ColorVector color = product(matrix, stored);
     // What was negative or not a number before must not become a colour.
     const bool is_color = stored[0] >= 0 && stored[1] >= 0 && stored[2] >= 0;
     for (std::size_t k = 0; k < 3; ++k) rgb[i + k] = float(is_color ? std::max(color[k], 0.0) : color[k]);

@@ -34,7 +34,7 @@ std::string lower_case(std::string text) {
 }
 
 /// "diffuse" and "R" of "diffuse.R".
-std::pair<std::string, std::string> split(const std::string& channel) {
+std::pair<std::string, std::string> split_channel_name(const std::string& channel) {
   const std::size_t dot = channel.rfind('.');
   if (dot == std::string::npos) return {"", channel};
   return {channel.substr(0, dot), channel.substr(dot + 1)};
@@ -44,13 +44,13 @@ std::pair<std::string, std::string> split(const std::string& channel) {
 std::string find_channel(const std::vector<std::string>& group,
                          std::initializer_list<std::string_view> names) {
   for (const std::string& channel : group)
-    if (std::find(names.begin(), names.end(), lower_case(split(channel).second)) != names.end())
+    if (std::find(names.begin(), names.end(), lower_case(split_channel_name(channel).second)) != names.end())
       return channel;
   return "";
 }
 
 std::optional<Layer> layer_of(const std::vector<std::string>& group, std::size_t part) {
-  Layer layer{Layer::Kind::rgb, split(group.front()).first, part};
+  Layer layer{Layer::Kind::rgb, split_channel_name(group.front()).first, part};
   layer.channels = {find_channel(group, {"r", "red"}), find_channel(group, {"g", "green"}),
                     find_channel(group, {"b", "blue"})};
   if (std::none_of(layer.channels.begin(), layer.channels.end(), [](const auto& c) { return c.empty(); }))
@@ -80,12 +80,13 @@ std::vector<Layer> layers_of(const std::vector<ExrPart>& parts) {
     std::vector<std::string> channels = channels_of(parts[p]);
     if (channels.size() == 1 && parts.size() == 1) {
       const std::string& only = channels.front();  // Whatever its name is.
-      return {{Layer::Kind::grey, split(only).first, p, {only, only, only}}};
+      return {{Layer::Kind::grey, split_channel_name(only).first, p, {only, only, only}}};
     }
     while (!channels.empty()) {
-      const std::string prefix = split(channels.front()).first;
-      const auto rest = std::stable_partition(channels.begin(), channels.end(),
-                                              [&](const auto& name) { return split(name).first == prefix; });
+      const std::string prefix = split_channel_name(channels.front()).first;
+      const auto rest = std::stable_partition(channels.begin(), channels.end(), [&](const auto& name) {
+        return split_channel_name(name).first == prefix;
+      });
       if (const auto layer = layer_of({channels.begin(), rest}, p)) layers.push_back(*layer);
       channels.erase(channels.begin(), rest);
     }
@@ -132,7 +133,7 @@ Layer choose_layer(const std::vector<ExrPart>& parts, const std::string& wanted)
 /// Of the data window. OpenEXR brings the chroma, of which there is a quarter as much, to the pixels.
 std::vector<float> read_luminance_and_chroma(Bytes file, const Imath::Box2i& window, const Layer& layer) {
   ExrBytes stream(file);
-  Imf::RgbaInputFile input(stream, split(layer.channels[0]).first);
+  Imf::RgbaInputFile input(stream, split_channel_name(layer.channels[0]).first);
   std::vector<Imf::Rgba> pixels(width_of(window) * height_of(window));
   input.setFrameBuffer(pixels.data() - window.min.x - std::ptrdiff_t(width_of(window)) * window.min.y, 1,
                        width_of(window));

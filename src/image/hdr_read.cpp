@@ -18,9 +18,9 @@ namespace {
 
 using Rgbe = std::array<unsigned char, 4>;
 
-class Reader {
+class HdrReader {
  public:
-  explicit Reader(Bytes bytes) : bytes_(bytes) {}
+  explicit HdrReader(Bytes bytes) : bytes_(bytes) {}
 
   std::string_view line() {
     const std::string_view text = rest();
@@ -59,7 +59,7 @@ class Reader {
 
 /// Numbers between blanks; throws unless there are `count`, all finite.
 template <std::size_t count>
-std::array<double, count> numbers(std::string_view name, std::string_view text) {
+std::array<double, count> numbers_of_header(std::string_view name, std::string_view text) {
   std::array<double, count> values{};
   for (double& value : values) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t+"), text.size()));
@@ -104,7 +104,7 @@ void read_resolution(std::string_view line, Header& header) {
   header.orientation = {rows_are_along_x, rows_rise != rows_are_along_x, pixels_rise != pixels_are_along_x};
 }
 
-Header read_header(Reader& reader) {
+Header read_header(HdrReader& reader) {
   Header header;
   reader.line();
   for (std::string_view line; !(line = reader.line()).empty();) {
@@ -117,11 +117,11 @@ Header read_header(Reader& reader) {
         throw Unreadable(fmt::format("its format '{}' is not supported", value));
     } else if (name == "EXPOSURE") {
       header.has_exposure = true;
-      for (double& factor : header.exposure) factor *= numbers<1>(name, value)[0];
+      for (double& factor : header.exposure) factor *= numbers_of_header<1>(name, value)[0];
     } else if (name == "COLORCORR") {
-      for (std::size_t k = 0; k < 3; ++k) header.exposure[k] *= numbers<3>(name, value)[k];
+      for (std::size_t k = 0; k < 3; ++k) header.exposure[k] *= numbers_of_header<3>(name, value)[k];
     } else if (name == "PRIMARIES") {
-      const auto n = numbers<8>(name, value);
+      const auto n = numbers_of_header<8>(name, value);
       header.chromaticities = {{{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}}}, {n[6], n[7]}};
     }
   }
@@ -132,7 +132,7 @@ Header read_header(Reader& reader) {
 }
 
 /// The four parts one after the other, each as runs and literal bytes.
-void read_parts(Reader& reader, std::vector<Rgbe>& row) {
+void read_parts(HdrReader& reader, std::vector<Rgbe>& row) {
   reader.pixel();
   for (std::size_t part = 0; part < 4; ++part)
     for (std::size_t x = 0; x < row.size();) {
@@ -147,7 +147,7 @@ void read_parts(Reader& reader, std::vector<Rgbe>& row) {
 }
 
 /// Pixels as they are; 1 1 1 n repeats the one before, n << 8 k times where k such stand before it.
-void read_pixels(Reader& reader, std::vector<Rgbe>& row) {
+void read_rgbe_pixels(HdrReader& reader, std::vector<Rgbe>& row) {
   int shift = 0;
   for (std::size_t x = 0; x < row.size();) {
     const Rgbe pixel = reader.pixel();
@@ -164,19 +164,19 @@ void read_pixels(Reader& reader, std::vector<Rgbe>& row) {
   }
 }
 
-void read_row(Reader& reader, std::vector<Rgbe>& row) {
+void read_row(HdrReader& reader, std::vector<Rgbe>& row) {
   constexpr std::size_t least_width = 8, most_width = 0x7fff;  // Of a row in parts.
   const Rgbe next = reader.next_pixel();
   const bool is_in_parts =
       row.size() >= least_width && row.size() <= most_width && next[0] == 2 && next[1] == 2 && next[2] < 128;
-  if (!is_in_parts) return read_pixels(reader, row);
+  if (!is_in_parts) return read_rgbe_pixels(reader, row);
   if (std::size_t(next[2]) << 8 != row.size() - next[3] || next[3] > row.size())
     throw Unreadable("a row of it does not fit its width");
   read_parts(reader, row);
 }
 
 ColorImage decode_hdr(Bytes bytes, const ColorRequest& request) {
-  Reader reader(bytes);
+  HdrReader reader(bytes);
   const Header header = read_header(reader);
   const double pixels = double(header.width) * header.height;
   // Four bytes can repeat a pixel 255 times, more of them in a row even more often.

@@ -14,7 +14,7 @@ namespace etendue {
 namespace {
 
 /// The transfer function of IEC 61966-2-1 from linear light, rounded to 8 bits.
-png_byte srgb_from_linear(float linear) {
+png_byte srgb_byte(float linear) {
   const double x = std::clamp(double(linear), 0.0, 1.0);
   const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
   return png_byte(std::lround(255 * encoded));
@@ -42,7 +42,7 @@ Pixels pixels_of(const std::filesystem::path& file, const Image& image) {
     if (std::isnan(r[i]) || std::isnan(g[i]) || std::isnan(b[i]))
       pixels[i] = {255, 0, 255};
     else
-      pixels[i] = {srgb_from_linear(r[i]), srgb_from_linear(g[i]), srgb_from_linear(b[i])};
+      pixels[i] = {srgb_byte(r[i]), srgb_byte(g[i]), srgb_byte(b[i])};
   }
   return pixels;
 }

@@ -33,7 +33,7 @@ const Plugin sampling_direct_plugin{
 enum class Keys { none, heuristic, power, sampling };
 
 /// What a name stands for.
-struct Row {
+struct NamedPathIntegrator {
   std::string_view name;
   std::string_view canonical;  ///< The name that says it whatever the dialect.
   std::string_view meaning;    ///< Of other names than the canonical one, nothing.
@@ -62,7 +62,7 @@ ByBoth best_rules(Heuristic heuristic, int light_samples) {
 PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic, 1)); }
 PathRules direct_light_rules(Heuristic heuristic) { return PathRules::direct(best_rules(heuristic, 4)); }
 
-constexpr Row table[]{
+constexpr NamedPathIntegrator path_integrators[]{
     {"path", "path",
      "Paths with any number of bounces, with the best that has been measured of light samples.", Keys::power,
      path_rules},
@@ -98,7 +98,7 @@ constexpr Row table[]{
     {"mipath", "path_mis", "", Keys::heuristic, path_mis_rules},
 };
 
-Plugin plugin_of(const Row& row) {
+Plugin plugin_of(const NamedPathIntegrator& row) {
   if (row.keys == Keys::sampling) return sampling_direct_plugin;
   Plugin plugin{"integrator", std::string(row.name), std::string(row.meaning), {}, {}};
   if (row.meaning.empty()) plugin.meaning = fmt::format("Another name of {}.", row.canonical);
@@ -108,10 +108,11 @@ Plugin plugin_of(const Row& row) {
 }
 
 /// Null for a name that no row has.
-const Row* find(std::string_view name) {
-  const auto* row = std::find_if(std::begin(table), std::end(table),
-                                 [&](const Row& candidate) { return candidate.name == name; });
-  return row == std::end(table) ? nullptr : row;
+const NamedPathIntegrator* find_path_integrator(std::string_view name) {
+  const auto* row =
+      std::find_if(std::begin(path_integrators), std::end(path_integrators),
+                   [&](const NamedPathIntegrator& candidate) { return candidate.name == name; });
+  return row == std::end(path_integrators) ? nullptr : row;
 }
 
 Heuristic heuristic_named(std::string_view name, const Location& where) {
@@ -153,7 +154,7 @@ int sample_count(const Parameters& parameters, std::string_view name) {
   return count;
 }
 
-std::string_view name_of(Heuristic heuristic) {
+std::string_view heuristic_text(Heuristic heuristic) {
   switch (heuristic) {
     case Heuristic::average:
       return "average";
@@ -171,7 +172,7 @@ std::string_view name_of(Heuristic heuristic) {
   return "";
 }
 
-std::string text_of(const LightSamples& lights) {
+std::string rules_text(const LightSamples& lights) {
   std::string text = fmt::format(" light_samples={} sampler={}", lights.count, lights.sampler);
   if (lights.later_count > 0) text += fmt::format(" later_light_samples={}", lights.later_count);
   if (lights.candidates == 0) text += " candidates=by_scene";
@@ -181,29 +182,29 @@ std::string text_of(const LightSamples& lights) {
     text += fmt::format(" technique={}", light_technique_name(lights.technique));
   return text;
 }
-std::string text_of(const ByLights& by) { return text_of(by.lights); }
-std::string text_of(const ByBsdf& by) { return fmt::format(" bsdf_samples={}", by.bsdf_samples); }
-std::string text_of(const ByBoth& by) {
+std::string rules_text(const ByLights& by) { return rules_text(by.lights); }
+std::string rules_text(const ByBsdf& by) { return fmt::format(" bsdf_samples={}", by.bsdf_samples); }
+std::string rules_text(const ByBoth& by) {
   std::string text =
-      fmt::format(" heuristic={}{} bsdf_samples={}{}", name_of(by.heuristic), text_of(by.lights),
+      fmt::format(" heuristic={}{} bsdf_samples={}{}", heuristic_text(by.heuristic), rules_text(by.lights),
                   by.bsdf_samples, by.only_where_glossy ? " only_where_glossy" : "");
   if (by.alpha != Colorf{0, 0, 0}) text += fmt::format(" alpha={},{},{}", by.alpha.r, by.alpha.g, by.alpha.b);
   return text;
 }
-std::string text_of(const PathRules& rules) {
-  return std::visit([](const auto& by) { return text_of(by); }, rules.direct_light());
+std::string rules_text(const PathRules& rules) {
+  return std::visit([](const auto& by) { return rules_text(by); }, rules.direct_light());
 }
-std::string text_of(const ShowNormals&) { return ""; }
-std::string text_of(const ShowMaterial&) { return ""; }
-std::string text_of(const VisibilityRules& rules) {
+std::string rules_text(const ShowNormals&) { return ""; }
+std::string rules_text(const ShowMaterial&) { return ""; }
+std::string rules_text(const VisibilityRules& rules) {
   return fmt::format(" cosine_weighted={} length={} background={}", rules.is_cosine_weighted, rules.length,
                      rules.background);
 }
-std::string text_of(const SimpleLight& light) {
+std::string rules_text(const SimpleLight& light) {
   return fmt::format(" position={},{},{} energy={},{},{}", light.position.x, light.position.y,
                      light.position.z, light.energy.r, light.energy.g, light.energy.b);
 }
-std::string text_of(const SingleRays& rules) { return " plugin=" + rules.plugin; }
+std::string rules_text(const SingleRays& rules) { return " plugin=" + rules.plugin; }
 
 IntegratorSettings make_sampling_direct(const Object& description, std::vector<UnreadKey>& unread) {
   const Parameters parameters(description, sampling_direct_plugin, unread);
@@ -229,7 +230,7 @@ IntegratorSettings make_sampling_direct(const Object& description, std::vector<U
 const std::vector<Plugin>& integrator_plugins() {
   static const std::vector<Plugin> plugins = [] {
     std::vector<Plugin> made;
-    for (const Row& row : table) made.push_back(plugin_of(row));
+    for (const NamedPathIntegrator& row : path_integrators) made.push_back(plugin_of(row));
     made.insert(made.end(), unlit_plugins().begin(), unlit_plugins().end());
     return made;
   }();
@@ -248,23 +249,24 @@ std::string_view IntegratorSettings::light_technique() const {
 
 std::string_view heuristic_name(const IntegratorSettings& integrator) {
   const PathRules* rules = integrator.path_rules();
-  return rules && rules->needs_both_pdfs() ? name_of(*rules->heuristic()) : "";
+  return rules && rules->needs_both_pdfs() ? heuristic_text(*rules->heuristic()) : "";
 }
 
 std::string describe(const IntegratorSettings& integrator) {
   return std::string(integrator.name) +
-         std::visit([](const auto& rules) { return text_of(rules); }, integrator.rules);
+         std::visit([](const auto& rules) { return rules_text(rules); }, integrator.rules);
 }
 
 IntegratorSettings make_integrator(const Object& description, Dialect dialect,
                                    std::vector<UnreadKey>& unread) {
   if (is_unlit(description.type)) return make_unlit(description, unread);
-  const Row* row = find(description.type);
+  const NamedPathIntegrator* row = find_path_integrator(description.type);
   if (!row) throw unknown_plugin(description, integrator_plugins());
   if (row->keys == Keys::sampling && dialect == Dialect::nori)
     return make_sampling_direct(description, unread);
   // In the other dialects this one takes no keys, and in one of them it means another.
-  if (row->keys == Keys::sampling) row = find(dialect == Dialect::nori_eth ? "every_light" : "direct_mats");
+  if (row->keys == Keys::sampling)
+    row = find_path_integrator(dialect == Dialect::nori_eth ? "every_light" : "direct_mats");
   Plugin plugin = plugin_of(*row);
   plugin.name = description.type;
   const Parameters parameters(description, plugin, unread);
@@ -274,7 +276,7 @@ IntegratorSettings make_integrator(const Object& description, Dialect dialect,
 
 IntegratorSettings integrator_from_name(std::string_view name) {
   if (is_unlit(name)) return unlit_from_name(name);
-  const Row* row = find(name);
+  const NamedPathIntegrator* row = find_path_integrator(name);
   if (!row) throw unknown_plugin("integrator", name, integrator_plugins());
   return {row->canonical, row->rules(row->keys == Keys::power ? Heuristic::power : Heuristic::balance)};
 }
@@ -285,10 +287,10 @@ IntegratorSettings with_light_sampler(const IntegratorSettings& integrator, std:
   lights.sampler = name;
   // These rules may have a name of their own: every_light is light with the sampler `all`.
   const PathRules rules = integrator.path_rules()->with_light_samples(lights);
-  const auto* row = std::find_if(std::begin(table), std::end(table), [&](const Row& candidate) {
-    return candidate.rules(Heuristic::balance) == rules;
-  });
-  return {row == std::end(table) ? integrator.name : row->canonical, rules};
+  const auto* row = std::find_if(
+      std::begin(path_integrators), std::end(path_integrators),
+      [&](const NamedPathIntegrator& candidate) { return candidate.rules(Heuristic::balance) == rules; });
+  return {row == std::end(path_integrators) ? integrator.name : row->canonical, rules};
 }
 
 IntegratorSettings with_light_technique(const IntegratorSettings& integrator, std::string_view technique) {

@@ -10,13 +10,13 @@ namespace {
 using Type = Parameter::Type;
 
 /// What a name stands for, with the parameters' defaults.
-struct Row {
+struct UnlitIntegrator {
   Plugin plugin;
   IntegratorRules rules;
 };
 
-const std::vector<Row>& table() {
-  static const std::vector<Row> rows{
+const std::vector<UnlitIntegrator>& unlit_integrators() {
+  static const std::vector<UnlitIntegrator> rows{
       {{"integrator", "normals", "The shading normal's |x|, |y|, |z| as red, green, blue.", {}, {}},
        ShowNormals{}},
       {{"integrator",
@@ -39,10 +39,11 @@ const std::vector<Row>& table() {
   return rows;
 }
 
-const Row* find(std::string_view name) {
-  const auto row = std::find_if(table().begin(), table().end(),
-                                [&](const Row& candidate) { return candidate.plugin.name == name; });
-  return row == table().end() ? nullptr : &*row;
+const UnlitIntegrator* find_unlit(std::string_view name) {
+  const auto row =
+      std::find_if(unlit_integrators().begin(), unlit_integrators().end(),
+                   [&](const UnlitIntegrator& candidate) { return candidate.plugin.name == name; });
+  return row == unlit_integrators().end() ? nullptr : &*row;
 }
 
 }  // namespace
@@ -50,16 +51,16 @@ const Row* find(std::string_view name) {
 const std::vector<Plugin>& unlit_plugins() {
   static const std::vector<Plugin> plugins = [] {
     std::vector<Plugin> made;
-    for (const Row& row : table()) made.push_back(row.plugin);
+    for (const UnlitIntegrator& row : unlit_integrators()) made.push_back(row.plugin);
     return made;
   }();
   return plugins;
 }
 
-bool is_unlit(std::string_view name) { return find(name) != nullptr; }
+bool is_unlit(std::string_view name) { return find_unlit(name) != nullptr; }
 
 IntegratorSettings make_unlit(const Object& description, std::vector<UnreadKey>& unread) {
-  const Row& row = *find(description.type);
+  const UnlitIntegrator& row = *find_unlit(description.type);
   const Parameters parameters(description, row.plugin, unread);
   IntegratorSettings settings{row.plugin.name, row.rules};
   if (auto* visibility = std::get_if<VisibilityRules>(&settings.rules);
@@ -80,7 +81,7 @@ IntegratorSettings make_unlit(const Object& description, std::vector<UnreadKey>&
 }
 
 IntegratorSettings unlit_from_name(std::string_view name) {
-  const Row& row = *find(name);
+  const UnlitIntegrator& row = *find_unlit(name);
   for (const Parameter& parameter : row.plugin.parameters)
     if (parameter.is_required)
       throw InputError(fmt::format("--integrator {}: it needs '{}', which only a scene file can state", name,

@@ -6,7 +6,7 @@ namespace etendue {
 
 namespace {
 
-struct Row {
+struct NamedLightSampler {
   std::string_view name, meaning;
   LightSampler (*make)(const Lights&);
 };
@@ -16,7 +16,7 @@ LightSampler make(const Lights& lights) {
   return LightSampler(Sampler(lights));
 }
 
-constexpr Row table[]{
+constexpr NamedLightSampler light_samplers[]{
     {"uniform", "One light, all alike.", make<UniformLights>},
     {"power", "One light, in proportion to its power.", make<PowerLights>},
     {"all", "Every light: a light sample is one sample of each, added up.", make<AllLights>},
@@ -26,10 +26,10 @@ constexpr Row table[]{
      make<TreeLights>},
 };
 
-const Row& row_named(std::string_view name) {
-  const auto* found =
-      std::find_if(std::begin(table), std::end(table), [&](const Row& row) { return row.name == name; });
-  if (found == std::end(table)) throw unknown_plugin("light sampler", name, light_sampler_plugins());
+const NamedLightSampler& row_named(std::string_view name) {
+  const auto* found = std::find_if(std::begin(light_samplers), std::end(light_samplers),
+                                   [&](const NamedLightSampler& row) { return row.name == name; });
+  if (found == std::end(light_samplers)) throw unknown_plugin("light sampler", name, light_sampler_plugins());
   return *found;
 }
 
@@ -38,7 +38,7 @@ const Row& row_named(std::string_view name) {
 const std::vector<Plugin>& light_sampler_plugins() {
   static const std::vector<Plugin> plugins = [] {
     std::vector<Plugin> made;
-    for (const Row& row : table)
+    for (const NamedLightSampler& row : light_samplers)
       made.push_back({"light sampler", std::string(row.name), std::string(row.meaning), {}, {}});
     return made;
   }();
@@ -54,7 +54,7 @@ std::int64_t facet_count(const Lights& lights) {
 }
 
 LightSampler make_light_sampler(std::string_view name, const Lights& lights) {
-  const Row& row = row_named(name);
+  const NamedLightSampler& row = row_named(name);
   // One facet leaves nothing to choose: the samples are the same but for rounding, without pilots and walks.
   if (row.name == "tree" && facet_count(lights) == 1) return make<UniformLights>(lights);
   return row.make(lights);

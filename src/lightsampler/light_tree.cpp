@@ -55,9 +55,9 @@ struct Sums {
   }
 };
 
-class Builder {
+class TreeBuilder {
  public:
-  explicit Builder(std::vector<Facet>& facets)
+  explicit TreeBuilder(std::vector<Facet>& facets)
       : facets_(facets),
         sparse_(2 * facets.size() - 1),
         most_in_leaf_(facets.size() >= many_facets ? most_in_leaf : 1) {
@@ -224,7 +224,7 @@ LightTree::LightTree(const Lights& lights) {
   for (Facet& facet : facets)
     facet.power = total == 0 ? 1.0 : facet.power > 0 ? std::max(facet.power / total, least_share) : 0;
 
-  clusters_ = Builder(facets).clusters();
+  clusters_ = TreeBuilder(facets).clusters();
   places_.resize(facets.size());
   leaves_.resize(facets.size());
   std::vector<double> powers;

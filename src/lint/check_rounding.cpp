@@ -10,7 +10,7 @@ namespace etendue {
 namespace {
 
 /// Of what rounding does to a place, the share of a shape's size from which it is told.
-constexpr double worth_telling = 1e-2;
+constexpr double rounding_worth_a_finding = 1e-2;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void check_rounding(const LintContext& context, Findings& findings) {
     const double farthest = std::max(
         {farther(box.low.x, box.high.x), farther(box.low.y, box.high.y), farther(box.low.z, box.high.z)});
     const double rounding = std::max(farthest * 0x1p-24, in_file);
-    if (!(rounding > worth_telling * size)) continue;
+    if (!(rounding > rounding_worth_a_finding * size)) continue;
     const ScenePlaces::Shape& shape = context.places.shapes[std::size_t(id)];
     findings.add(
         "rounded-place", shape.where,

@@ -44,9 +44,9 @@ const Plugin chi2test_plugin{
 namespace {
 
 constexpr double pi_d = std::numbers::pi;
-constexpr int quadrature_points = 15;                         ///< Along each side of a cell, at first.
-constexpr double allowance_of_empty_cells = 1e-5;             ///< Of the number of samples.
-constexpr std::int64_t most_samples = std::int64_t{1} << 32;  ///< Sample numbers are 32-bit.
+constexpr int quadrature_points = 15;              ///< Along each side of a cell, at first.
+constexpr double allowance_of_empty_cells = 1e-5;  ///< Of the number of samples.
+constexpr std::int64_t most_samples_of_case = std::int64_t{1} << 32;  ///< Sample numbers are 32-bit.
 
 struct Chi2Rules {
   int rows, directions;
@@ -71,7 +71,7 @@ struct Chi2Rules {
   }
 };
 
-int positive(const Parameters& parameters, std::string_view name, int most) {
+int positive_integer(const Parameters& parameters, std::string_view name, int most) {
   const int value = parameters.integer(name);
   if (value < 1 || value > most)
     throw InputError(parameters.location(name),
@@ -81,16 +81,16 @@ int positive(const Parameters& parameters, std::string_view name, int most) {
 
 Chi2Rules rules_of(const TestRun& run, const Parameters& parameters) {
   Chi2Rules rules{};
-  rules.rows = positive(parameters, "resolution", 1000);
-  rules.directions = positive(parameters, "testCount", 1000000);
+  rules.rows = positive_integer(parameters, "resolution", 1000);
+  rules.directions = positive_integer(parameters, "testCount", 1000000);
   rules.sample_count = parameters.integer("sampleCount");
   if (rules.sample_count < 0) rules.sample_count = 5000 * std::int64_t(rules.cells());
   if (rules.sample_count == 0)
     throw InputError(parameters.location("sampleCount"), "'sampleCount' is 0; nothing would be tested");
-  if (rules.sample_count > most_samples)
+  if (rules.sample_count > most_samples_of_case)
     throw InputError(parameters.location("resolution"),
                      fmt::format("5000 samples for each of {} cells are more than the {} that can be drawn",
-                                 rules.cells(), most_samples),
+                                 rules.cells(), most_samples_of_case),
                      "state a 'sampleCount', or a lower 'resolution'");
   rules.pooling_threshold = parameters.integer("minExpFrequency");
   rules.level = parameters.real("significanceLevel");
@@ -110,7 +110,9 @@ Vec3f random_viewer(const Chi2Rules& rules, const Vec2f& u, bool is_in_medium) {
   return {sin_theta * std::cos(2 * pi * u.y), sin_theta * std::sin(2 * pi * u.y), u.x};
 }
 
-bool is_finite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite_direction(const Vec3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// A phase function for a viewer anywhere, though it samples in the frame of its ray.
 struct FreePhase {
@@ -146,7 +148,7 @@ Observed observe(const Model& model, const Vec3f& wo, const Chi2Rules& rules, co
       if (sample.weight == Colorf{0, 0, 0}) continue;
       if (std::isinf(sample.pdf_solid_angle)) has_dirac = true;
       const float sum = sample.weight.r + sample.weight.g + sample.weight.b + sample.pdf_solid_angle;
-      if (std::isfinite(sum) && is_finite(sample.wi_local)) {
+      if (std::isfinite(sum) && is_finite_direction(sample.wi_local)) {
         ++part.counts[rules.cell_of(sample.wi_local)];
         part.density_sum += sample.pdf_solid_angle;
       } else {
@@ -213,8 +215,8 @@ void require_resolved(const CaseResult& result, const Observed& observed, const 
                     lobe_sr, rules.rows, resolved_sr));
 }
 
-void judge(CaseResult& result, const Observed& observed, const std::vector<double>& expected,
-           const Chi2Rules& rules) {
+void judge_counts(CaseResult& result, const Observed& observed, const std::vector<double>& expected,
+                  const Chi2Rules& rules) {
   const ChiSquaredTest test =
       chi_squared_test(observed.counts, expected,
                        {.pooling_threshold = rules.pooling_threshold,
@@ -258,8 +260,8 @@ void run_chi2test(TestRun& run) {
             random_viewer(rules, RandomSquares(SamplerKind::independent, hash64(seed))[0], is_phase);
         const auto test = [&](const auto& model) {
           if (direction == 0) run.warn(unread_of_subject);
-          judge(measured, observe(model, wo, rules, run.settings, seed),
-                expect(model, wo, rules, run.settings), rules);
+          judge_counts(measured, observe(model, wo, rules, run.settings, seed),
+                       expect(model, wo, rules, run.settings), rules);
         };
         if (is_phase) return test(FreePhase{make_phase(subject, unread_of_subject)});
         TextureFiles textures{run.test.directory};

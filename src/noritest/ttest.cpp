@@ -43,7 +43,7 @@ struct TTestRules {
   std::int64_t tests;
 };
 
-std::vector<double> numbers(const Parameters& parameters, std::string_view name) {
+std::vector<double> listed_numbers(const Parameters& parameters, std::string_view name) {
   if (!parameters.has(name)) return {};
   return parse_reals(parameters.text(name), parameters.location(name));
 }
@@ -56,8 +56,8 @@ double significance_level(const Parameters& parameters) {
   return level;
 }
 
-void judge(CaseResult& result, const RunningStatistics& samples, std::int64_t invalid_samples,
-           const TTestRules& rules) {
+void judge_mean(CaseResult& result, const RunningStatistics& samples, std::int64_t invalid_samples,
+                const TTestRules& rules) {
   const MeanTest test = t_test(samples, result.reference, rules.variance_floor);
   result.mean = samples.mean;
   result.statistic = test.statistic;
@@ -93,7 +93,7 @@ void test_scene(TestRun& run, const Object& scene, double reference, std::uint64
     if (integrator.needs_lights() && reference != 0) check_has_light(description, loaded.scene);
     const SceneLuminance luminances =
         sample_luminance(loaded.scene, integrator, rules.sample_count, run.settings, seed);
-    judge(measured, luminances.samples, luminances.invalid_samples, rules);
+    judge_mean(measured, luminances.samples, luminances.invalid_samples, rules);
   });
 }
 
@@ -138,7 +138,7 @@ void test_bsdf(TestRun& run, const Object& bsdf, double angle_deg, double refere
           }
         },
         material);
-    judge(measured, samples.luminances, samples.invalid, rules);
+    judge_mean(measured, samples.luminances, samples.invalid, rules);
   });
 }
 
@@ -161,7 +161,7 @@ ReferenceOrder reference_order(const Parameters& parameters, std::size_t referen
 
 void test_bsdfs(TestRun& run, const Parameters& parameters, const std::vector<const Object*>& bsdfs,
                 const std::vector<double>& references, const TTestRules& rules) {
-  const std::vector<double> angles = numbers(parameters, "angles");
+  const std::vector<double> angles = listed_numbers(parameters, "angles");
   const ReferenceOrder order = reference_order(parameters, references.size(), bsdfs.size(), angles.size());
   const std::size_t angles_a_bsdf = order == ReferenceOrder::own_angles ? references.size() : angles.size();
   for (std::size_t b = 0; b < bsdfs.size(); ++b)
@@ -199,13 +199,13 @@ void test_emitter(TestRun& run, const Object& emitter, double distance, double r
           lights.sample<float>(0, 1, receiver, u_light.bits(std::uint32_t(i)), true);
       samples.add(sample.is_there ? sample.radiance_over_pdf : Colorf{0, 0, 0});
     }
-    judge(measured, samples.luminances, samples.invalid, rules);
+    judge_mean(measured, samples.luminances, samples.invalid, rules);
   });
 }
 
 void test_emitters(TestRun& run, const Parameters& parameters, const std::vector<const Object*>& emitters,
                    const std::vector<double>& references, const TTestRules& rules) {
-  const std::vector<double> distances = numbers(parameters, "distances");
+  const std::vector<double> distances = listed_numbers(parameters, "distances");
   if (references.size() != emitters.size() * distances.size())
     throw InputError(
         parameters.location("references"),
@@ -233,7 +233,7 @@ void run_ttest(TestRun& run) {
   std::vector<UnreadKey> unread;
   const Parameters parameters(run.test.root, ttest_plugin, unread);
   run.warn(unread);
-  const std::vector<double> references = numbers(parameters, "references");
+  const std::vector<double> references = listed_numbers(parameters, "references");
   const TTestRules rules{significance_level(parameters), parameters.integer("sampleCount"),
                          run.test.dialect == Dialect::nori_2012 ? 1e-4 : 1e-5,
                          std::int64_t(references.size())};

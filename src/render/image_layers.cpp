@@ -11,7 +11,7 @@
 namespace etendue {
 namespace {
 
-struct Row {
+struct NamedLayers {
   std::string name, meaning;
   std::variant<RadianceLayers (*)(const LightGroups& groups), HitLayer, RenderLayer> what;
 };
@@ -33,7 +33,7 @@ RadianceLayers by_depth(const LightGroups&) {
   return {set, {"emission", "direct", "indirect.1", "indirect.2", "indirect.3", "indirect.beyond"}};
 }
 
-std::vector<float> samples(const LayerSource& source) {
+std::vector<float> sample_counts(const LayerSource& source) {
   std::vector<float> counts;
   const Film& film = source.result.film;
   for (int y = 0; y < film.height(); ++y)
@@ -52,8 +52,8 @@ std::vector<float> variance_share(const LayerSource& source) {
   return shares;
 }
 
-const std::vector<Row>& table() {
-  static const std::vector<Row> rows{
+const std::vector<NamedLayers>& layer_table() {
+  static const std::vector<NamedLayers> rows{
       {"light", "light.NAME.*: what each light brings; lights of one name are one layer", by_light},
       {"technique",
        "emission.*: light that the camera sees; technique.light.*, technique.bsdf.*: what light samples and "
@@ -81,18 +81,18 @@ const std::vector<Row>& table() {
        HitLayer{{"shape", [](const FirstHit& hit) { return float(hit.shape); }},
                 {"material", [](const FirstHit& hit) { return float(hit.material); }},
                 {"light", [](const FirstHit& hit) { return float(hit.light); }}}},
-      {"samples", "How many the pixel has taken", RenderLayer{"count", samples}},
+      {"samples", "How many the pixel has taken", RenderLayer{"count", sample_counts}},
       {"variance_share", "The squared standard error of its luminance, over the sum of all pixels'",
        RenderLayer{"Y", variance_share}}};
   return rows;
 }
 
 ImageLayer make_layer(const std::string& name, const LightGroups& groups) {
-  const auto row = std::find_if(table().begin(), table().end(),
-                                [&](const Row& candidate) { return candidate.name == name; });
-  if (row == table().end()) {
+  const auto row = std::find_if(layer_table().begin(), layer_table().end(),
+                                [&](const NamedLayers& candidate) { return candidate.name == name; });
+  if (row == layer_table().end()) {
     std::vector<std::string> known;
-    for (const Row& each : table()) known.push_back(each.name);
+    for (const NamedLayers& each : layer_table()) known.push_back(each.name);
     throw InputError(fmt::format("unknown layer '{}'\n{}", name, known_names(name, known)));
   }
   if (const auto* make = std::get_if<RadianceLayers (*)(const LightGroups&)>(&row->what))
@@ -119,7 +119,7 @@ void add_radiance(const std::string& name, const Film& film, std::vector<Channel
 
 std::vector<KnownLayer> known_layers() {
   std::vector<KnownLayer> known;
-  for (const Row& row : table()) known.push_back({row.name, row.meaning});
+  for (const NamedLayers& row : layer_table()) known.push_back({row.name, row.meaning});
   return known;
 }
 

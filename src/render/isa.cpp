@@ -14,10 +14,12 @@ namespace etendue {
 namespace {
 
 constexpr std::array all_isas{Isa::scalar, Isa::v2, Isa::v3, Isa::v4};
-constexpr std::array<std::string_view, 4> names{"scalar", "v2", "v3", "v4"};
+constexpr std::array<std::string_view, 4> isa_names{"scalar", "v2", "v3", "v4"};
 
 /// Whether kernels were built for it.
-bool is_built(Isa isa) { return std::string_view(ETENDUE_ISAS).find(isa_name(isa)) != std::string_view::npos; }
+bool is_built(Isa isa) {
+  return std::string_view(ETENDUE_ISAS).find(isa_name(isa)) != std::string_view::npos;
+}
 
 bool has_isa(Isa isa) {
   __builtin_cpu_init();
@@ -53,7 +55,7 @@ const Kernel* load_kernel(Isa isa) {
 
 }  // namespace
 
-std::string_view isa_name(Isa isa) { return names[std::size_t(isa)]; }
+std::string_view isa_name(Isa isa) { return isa_names[std::size_t(isa)]; }
 
 std::vector<Isa> available_isas() {
   std::vector<Isa> available;
@@ -72,7 +74,7 @@ Isa isa_from_name(std::string_view name) {
     return isa;
   }
   throw InputError({}, fmt::format("unknown instruction set '{}'", name),
-                   known_names(name, std::vector<std::string>(names.begin(), names.end())));
+                   known_names(name, std::vector<std::string>(isa_names.begin(), isa_names.end())));
 }
 
 int lane_count(Isa isa) { return kernel_for(isa).lanes; }

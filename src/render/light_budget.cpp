@@ -1,17 +1,17 @@
 #include "render/light_budget.h"
 
+#include "base/clock.h"
 #include "render/pilot_squares.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace etendue {
 namespace {
 
-constexpr int samples = 16;  // A pixel, in each of the two renders.
+constexpr int samples_of_budget = 16;  // A pixel, in each of the two renders.
 constexpr double better_by = 1.5;
-constexpr int pixels_a_square = 1024, most_squares = 2048;
+constexpr int pixels_a_budget_square = 1024, most_budget_squares = 2048;
 
 /// About how long a sample takes, in seconds, as measured over scenes of 1e1 to 1e6 triangles: two thirds of
 /// it for what is seen, the rest for light samples.
@@ -26,7 +26,7 @@ double seconds_of_sample(const Scene& scene, std::int64_t facets, const LightBud
 /// Mean absolute difference of the two replicates of all pixels; none where it was stopped.
 std::optional<double> error_of(PilotSquares& squares, const RenderSettings& settings,
                                const StopRequest* stop) {
-  const auto means = squares.render(settings, 2, samples, stop);
+  const auto means = squares.render(settings, 2, samples_of_budget, stop);
   if (!means) return std::nullopt;
   double sum = 0;
   for (std::size_t i = 0; i < means->size(); i += 2)
@@ -39,7 +39,7 @@ std::optional<double> error_of(PilotSquares& squares, const RenderSettings& sett
 std::optional<BudgetPilot> light_budget_for(const Scene& scene, const RenderSettings& settings,
                                             const StopRequest* stop) {
   if (!has_open_light_budget(settings.integrator)) return std::nullopt;
-  const auto start = std::chrono::steady_clock::now();
+  const Clock::time_point start = Clock::now();
   const std::int64_t facets = facet_count(scene.lights);
   const LightBudget usual = light_budget(settled(settings.integrator, scene.lights));
   BudgetPilot pilot{usual, {{usual, 0, 0}}};
@@ -50,7 +50,8 @@ std::optional<BudgetPilot> light_budget_for(const Scene& scene, const RenderSett
         pilot.tried.push_back({other, 0, 0});
   const double pixels = double(scene.camera.width_px) * scene.camera.height_px;
   if (pixels < fewest_pixels_for_pilots) return std::nullopt;
-  PilotSquares squares(scene, settings, int(std::min(pixels / pixels_a_square, double(most_squares))));
+  PilotSquares squares(scene, settings,
+                       int(std::min(pixels / pixels_a_budget_square, double(most_budget_squares))));
   RenderSettings of_pilot = pilot_settings(settings, 0xb0d9e7);
   for (TriedBudget& each : pilot.tried) {
     of_pilot.integrator = with_light_budget(settings.integrator, each.budget);
@@ -61,7 +62,7 @@ std::optional<BudgetPilot> light_budget_for(const Scene& scene, const RenderSett
   }
   const auto best = std::ranges::max_element(pilot.tried, {}, &TriedBudget::efficiency);
   if (best->efficiency() > better_by * pilot.tried.front().efficiency()) pilot.chosen = best->budget;
-  pilot.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  pilot.seconds = seconds_since(start);
   return pilot;
 }
 

@@ -1,10 +1,10 @@
 #include "render/optimal_weights.h"
 
+#include "base/clock.h"
 #include "render/pilot_squares.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -14,7 +14,7 @@ namespace {
 constexpr int replicates = 4, samples_per_replicate = 8;
 constexpr double caution = 4;  // Times the noise of a coefficient: within two standard errors of 0 it is 0.
 constexpr double time_of_control = 1.04;  // Times that without it.
-constexpr int pixels_a_square = 2048, most_squares = 2048;
+constexpr int pixels_a_weight_square = 2048, most_weight_squares = 2048;
 
 /// A linear regression of one channel on the control variate, within pixels.
 class Regression {
@@ -67,9 +67,10 @@ bool needs_weight_pilot(const Scene& scene, const RenderSettings& settings) {
 
 std::optional<WeightPilot> optimal_alpha_for(const Scene& scene, const RenderSettings& settings,
                                              const StopRequest* stop) {
-  const auto start = std::chrono::steady_clock::now();
+  const Clock::time_point start = Clock::now();
   const double pixels = double(scene.camera.width_px) * scene.camera.height_px;
-  PilotSquares squares(scene, settings, int(std::min(pixels / pixels_a_square, double(most_squares))));
+  PilotSquares squares(scene, settings,
+                       int(std::min(pixels / pixels_a_weight_square, double(most_weight_squares))));
   RenderSettings of_pilot = pilot_settings(settings, 0xa19ba);
   const auto render_with = [&](float alpha) {
     of_pilot.integrator = with_alpha(settings.integrator, {alpha, alpha, alpha});
@@ -116,7 +117,7 @@ std::optional<WeightPilot> optimal_alpha_for(const Scene& scene, const RenderSet
     const bool pays = pilot.variance_ratio * time_of_control < 1;  // Not a number where nothing varies.
     if (!pays || pilot.alpha == Colorf{0, 0, 0}) pilot.alpha = {0, 0, 0}, pilot.variance_ratio = 1;
   }
-  pilot.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  pilot.seconds = seconds_since(start);
   return pilot;
 }
 

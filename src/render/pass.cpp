@@ -1,10 +1,10 @@
 #include "render/pass.h"
 
+#include "base/clock.h"
 #include "film/part_covariances.h"
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <mutex>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -15,14 +15,8 @@ namespace etendue {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 /// One thread's scratch, and what it has put into the film in the pass.
-struct Worker {
+struct TileWorker {
   std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
   std::vector<Color<double>> means;
   InvalidSamples invalid_of_tile, invalid;
@@ -111,7 +105,7 @@ struct Passes::Threads {
   const std::vector<LayerSet> layer_sets = layer_sets_of(settings);
   const std::size_t noise_parts = settings.noise_parts ? settings.noise_parts->count() : 0;
   PartCovariances noise{noise_parts > 0 ? scene.camera.width_px : 0, scene.camera.height_px, noise_parts};
-  tbb::enumerable_thread_specific<Worker> workers{};
+  tbb::enumerable_thread_specific<TileWorker> workers{};
   std::optional<double> seconds_per_replicate{};  ///< As the last pass took.
   std::atomic<double> stop_requested_at{0};       ///< Of Clock; 0: not seen yet.
 
@@ -121,7 +115,7 @@ struct Passes::Threads {
                    std::vector<FilmStack>& films, ReplicateLuminances* luminances,
                    std::span<double> covariances) {
     if (must_stop()) return false;
-    Worker& worker = workers.local();
+    TileWorker& worker = workers.local();
     worker.block->cut_store = &cuts;
     worker.largest.resize(noise_parts);
     TileJob job{.scene = &scene,
@@ -169,7 +163,7 @@ struct Passes::Threads {
   /// Of all workers, which begin anew.
   void take_counts(PassResult& result) {
     result.largest.resize(noise_parts);
-    for (Worker& worker : workers) {
+    for (TileWorker& worker : workers) {
       result.counts.samples += worker.counts.samples;
       result.counts += worker.counts;
       result.invalid.add(worker.invalid);
@@ -202,7 +196,7 @@ double Passes::measure_pace() {
   constexpr double most_seconds = 0.05;
   const int width = threads.scene.camera.width_px, height = threads.scene.camera.height_px;
   const Clock::time_point start = Clock::now();
-  Worker worker;
+  TileWorker worker;
   double measured = 0;
   for (int k = 0; k < along * along && seconds_since(start) < most_seconds; ++k) {
     const int x = (2 * (k % along) + 1) * width / (2 * along),

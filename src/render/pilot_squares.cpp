@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-struct Worker {
+struct SquareWorker {
   std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
   std::vector<Color<double>> means;
   InvalidSamples invalid;
@@ -57,13 +57,13 @@ std::optional<std::vector<Color<double>>> PilotSquares::render(const RenderSetti
                                                                int samples_per_replicate,
                                                                const StopRequest* stop) {
   const Kernel& kernel = kernel_for(settings.isa);
-  tbb::enumerable_thread_specific<Worker> workers;
+  tbb::enumerable_thread_specific<SquareWorker> workers;
   const auto must_stop = [&] { return stop && stop->soon.load(std::memory_order_relaxed); };
   const auto means_of_square = std::size_t(pixels * replicates);
   std::vector<Color<double>> means(squares_.size() * means_of_square);
   const auto render_square = [&](std::size_t k) {
     if (must_stop()) return;
-    Worker& worker = workers.local();
+    SquareWorker& worker = workers.local();
     worker.block->cut_store = &cuts_;
     TileJob job{.scene = &scene_,
                 .light_sampler = &light_sampler_,

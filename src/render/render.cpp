@@ -1,10 +1,10 @@
 #include "render/render.h"
 
+#include "base/clock.h"
 #include "film/film_stack.h"
 #include "render/check_settings.h"
 #include "render/pass.h"
 
-#include <chrono>
 #include <tbb/task_arena.h>
 #include <utility>
 #include <vector>
@@ -16,7 +16,7 @@ int available_threads() { return tbb::this_task_arena::max_concurrency(); }
 RenderResult render(const Scene& scene, const RenderSettings& settings, const ProgressCallback& progress,
                     const StopRequest* stop) {
   check_settings(settings);
-  const auto start = std::chrono::steady_clock::now();
+  const Clock::time_point start = Clock::now();
   const int replicates = settings.replicate_count();
   const double pixels = double(scene.camera.width_px) * scene.camera.height_px;
   std::vector<FilmStack> films;  // Of the image, and then of each layer.
@@ -59,7 +59,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings, const Pr
     result.layers.push_back(passes.take_film(std::move(films[k])));
   for (std::size_t k = 0; k < largest.size(); ++k)
     result.noise.push_back({covariances[k + 1] / covariances[0], std::move(largest[k])});
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = seconds_since(start);
   return result;
 }
 

@@ -8,7 +8,7 @@ namespace etendue {
 namespace {
 
 constexpr int largest_side_px = 32, smallest_side_px = 4, tiles_a_thread = 8;
-constexpr std::int64_t most_samples = 4'000'000;
+constexpr std::int64_t most_samples_of_tile = 4'000'000;
 
 /// Adds `tile`, or its quarters where it is large.
 void add_in_parts(const WorkUnit& tile, std::int64_t most, std::vector<WorkUnit>& tiles) {
@@ -42,7 +42,7 @@ std::int64_t WorkUnit::samples() const {
 std::vector<WorkUnit> tiles_of(const WorkUnit& whole, int threads) {
   const PixelRectangle& all = whole.pixels;
   const std::int64_t most =
-      std::min(most_samples, whole.samples() / (std::int64_t(threads) * tiles_a_thread) + 1);
+      std::min(most_samples_of_tile, whole.samples() / (std::int64_t(threads) * tiles_a_thread) + 1);
   std::vector<WorkUnit> tiles;
   for (int y = all.y_begin; y < all.y_end; y += largest_side_px)
     for (int x = all.x_begin; x < all.x_end; x += largest_side_px) {

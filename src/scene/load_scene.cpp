@@ -1,12 +1,12 @@
 #include "scene/load_scene.h"
 
+#include "base/clock.h"
 #include "geometry/bounds.h"
 #include "scene/load_light.h"
 #include "scene/load_shape.h"
 #include "scene/moved_scene.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -21,13 +21,8 @@ namespace etendue {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 /// Equal for objects that say the same in the same order, wherever they stand.
-std::string text_of(const Object& object) {
+std::string text_of_object(const Object& object) {
   std::string text;
   const auto add_bytes = [&](const auto& value) {
     text.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -52,7 +47,7 @@ std::string text_of(const Object& object) {
         },
         property.value);
   }
-  for (const Object& child : object.children) add(text_of(child));
+  for (const Object& child : object.children) add(text_of_object(child));
   return text;
 }
 
@@ -216,7 +211,7 @@ class Loader {
   /// Of the material that `bsdf` describes, diffuse where there is none. Shapes whose descriptions are alike
   /// share one; where the description has keys that nobody reads, each is made, and warned of, by itself.
   std::int32_t material_id(const Object* bsdf, const Object& shape) {
-    const std::string description = bsdf ? text_of(*bsdf) : "";
+    const std::string description = bsdf ? text_of_object(*bsdf) : "";
     if (const auto known = material_ids_.find(description); known != material_ids_.end())
       return known->second;
     const auto id = std::int32_t(materials_.size());
@@ -284,7 +279,8 @@ class Loader {
   int samples_per_pixel_ = 16;
   Geometry geometry_;
   std::vector<Material> materials_;
-  std::unordered_map<std::string, std::int32_t> material_ids_;  ///< By what text_of() makes of the BSDF.
+  std::unordered_map<std::string, std::int32_t>
+      material_ids_;  ///< By what text_of_object() makes of the BSDF.
   Lights lights_;
   ScenePlaces places_;
   std::optional<HomogeneousMedium> medium_;

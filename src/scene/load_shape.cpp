@@ -18,14 +18,15 @@ namespace {
 using Type = Parameter::Type;
 
 const std::vector<std::string> surface_children{"bsdf", "brdf", "emitter", "luminaire"};
-const Parameter to_world{"toWorld", Type::transform, "", "", "World from object; identity unless given"};
+const Parameter to_world_parameter{"toWorld", Type::transform, "", "",
+                                   "World from object; identity unless given"};
 
 const Plugin obj_plugin{
     "shape",
     "obj",
     "A triangle mesh from a Wavefront OBJ file; written as <mesh type=\"obj\"> or <shape type=\"obj\">.",
     {{"filename", Type::text, "", "", "The file, relative to the scene file", true},
-     to_world,
+     to_world_parameter,
      {"materials", Type::boolean, "false", "", "With the materials of the MTL files that it names"},
      {"usemtl", Type::text, "", "", "Only the faces of this material"}},
     surface_children};
@@ -34,7 +35,7 @@ const Plugin ply_plugin{
     "ply",
     "A triangle mesh from a PLY file, ASCII or binary; written as <mesh type=\"ply\"> or <shape "
     "type=\"ply\">.",
-    {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world},
+    {{"filename", Type::text, "", "", "The file, relative to the scene file", true}, to_world_parameter},
     surface_children};
 const Plugin sphere_plugin{
     "shape",
@@ -43,18 +44,18 @@ const Plugin sphere_plugin{
     {{"center", Type::point, "0 0 0", "m", "Centre"},
      {"radius", Type::real, "1", "m", "Radius"},
      {"uOffset", Type::real, "0", "", "Added to u, from 0 to below 1; 0.5 is ETH's u of 2020"},
-     to_world},
+     to_world_parameter},
     surface_children};
 const Plugin rectangle_plugin{"shape",
                               "rectangle",
                               "The square [-1, 1] x [-1, 1] at z = 0, facing +z, under toWorld.",
-                              {to_world},
+                              {to_world_parameter},
                               surface_children};
 
 const Plugin disk_plugin{"shape",
                          "disk",
                          "The disk of radius 1 at z = 0, facing +z, under toWorld; exact.",
-                         {to_world},
+                         {to_world_parameter},
                          surface_children};
 
 Transform world_from_object(const Parameters& parameters) {
@@ -66,7 +67,7 @@ Transform world_from_object(const Parameters& parameters) {
   return transform;
 }
 
-std::string label(const Object& object, const std::string& fallback) {
+std::string name_of_shape(const Object& object, const std::string& fallback) {
   return object.name.empty() ? fallback : object.name;
 }
 
@@ -156,7 +157,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     if (is_obj && parameters.is_stated("usemtl")) usemtl = parameters.text("usemtl");
     Mesh mesh = meshes.read(object, file, world_from_object(parameters), usemtl,
                             is_obj ? read_obj_file : read_ply_file);
-    const std::string name = label(object, file.stem().string());
+    const std::string name = name_of_shape(object, file.stem().string());
     const bool has_bsdf = std::any_of(object.children.begin(), object.children.end(), is_bsdf);
     // Of a single material nothing is lost where the scene file has its own.
     if (!usemtl && mesh.materials > (has_bsdf ? 1 : 0)) warnings.push_back(mesh.materials_passed_over);
@@ -194,7 +195,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
                        fmt::format("'uOffset' is {}; it must be from 0 to below 1", u_offset));
     geometry.add_sphere(sphere, ids, float(u_offset));
     if (light) check_untextured(object, *light);
-    if (light) lights.add<SphereLights>(light->strength, label(object, numbered), sphere);
+    if (light) lights.add<SphereLights>(light->strength, name_of_shape(object, numbered), sphere);
   } else if (object.type == rectangle_plugin.name) {
     const Parameters parameters(object, rectangle_plugin, unread);
     const Transform transform = world_from_object(parameters);
@@ -205,12 +206,12 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
     check_extent(object, corner, along_x, along_y);
     const std::int32_t id = geometry.add_mesh(mesh, ids);
     if (light && light->texture) {
-      lights.add<TexturedLights>(light->strength, label(object, numbered), geometry, id,
+      lights.add<TexturedLights>(light->strength, name_of_shape(object, numbered), geometry, id,
                                  light->texture->radiance);
     } else if (light) {
       // The front stays in front under a mirroring transform, as for the mesh.
       const bool is_mirrored = determinant(transform) < 0;
-      lights.add<RectangleLights>(light->strength, label(object, numbered), corner,
+      lights.add<RectangleLights>(light->strength, name_of_shape(object, numbered), corner,
                                   is_mirrored ? along_y : along_x, is_mirrored ? along_x : along_y);
     }
   } else if (object.type == disk_plugin.name) {
@@ -222,7 +223,7 @@ void add_shape_geometry(const Object& object, const std::filesystem::path& direc
                  (disk.center + disk.along_y) - disk.center);
     geometry.add_disk(disk, ids);
     if (light) check_untextured(object, *light);
-    if (light) lights.add<DiskLights>(light->strength, label(object, numbered), disk);
+    if (light) lights.add<DiskLights>(light->strength, name_of_shape(object, numbered), disk);
   } else {
     throw unknown_plugin(object, shape_plugins());
   }

@@ -9,7 +9,7 @@ namespace etendue {
 
 namespace {
 
-constexpr std::string_view to_world = "toWorld";
+constexpr std::string_view to_world_key = "toWorld";
 
 bool has_place(const Object& object) {
   constexpr std::array families{"camera", "mesh", "shape", "medium"};
@@ -22,7 +22,7 @@ bool has_place(const Object& object) {
 auto* transform_of(auto& object) {
   decltype(std::get_if<Transform>(&object.properties.front().value)) found = nullptr;
   for (auto& property : object.properties)
-    if (property.name == to_world && !found) found = std::get_if<Transform>(&property.value);
+    if (property.name == to_world_key && !found) found = std::get_if<Transform>(&property.value);
   return found;
 }
 
@@ -31,7 +31,8 @@ void move(Object& object, const Transform& by) {
     if (Transform* transform = transform_of(object))
       *transform = by * *transform;
     else
-      object.properties.push_back({std::string(to_world), "transform", by, object.location, object.location});
+      object.properties.push_back(
+          {std::string(to_world_key), "transform", by, object.location, object.location});
   }
   for (Object& child : object.children) move(child, by);
 }

@@ -71,15 +71,15 @@ constexpr Format by_first_word[]{
     {"newmtl"sv, "a library of materials of an OBJ mesh"},
 };
 
-constexpr std::string_view white_space = " \t\r\n";
+constexpr std::string_view white_space_in_files = " \t\r\n";
 
 std::string_view first_word(std::string_view text) {
   for (;;) {
-    text.remove_prefix(std::min(text.find_first_not_of(white_space), text.size()));
+    text.remove_prefix(std::min(text.find_first_not_of(white_space_in_files), text.size()));
     if (!text.starts_with('#') && !text.starts_with("//")) break;
     text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
   }
-  return text.substr(0, text.find_first_of(white_space));
+  return text.substr(0, text.find_first_of(white_space_in_files));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view what_is_expected = "expected {\"dialect\": \"nori-eth\"}, or another dialect";
 
 /// The place of `"text"`; the whole file where it is not written so.
-Location place_of(const std::shared_ptr<const SourceFile>& source, const std::string& text) {
+Location place_of_setting(const std::shared_ptr<const SourceFile>& source, const std::string& text) {
   const std::size_t found = source->text.find('"' + text + '"');
   return found == std::string::npos ? Location{source} : Location{source, found + 1, text.size()};
 }
@@ -35,14 +35,14 @@ FolderSettings read_settings(const fs::path& file) {
   FolderSettings settings{file, std::nullopt};
   for (const auto& [key, value] : json.items()) {
     if (key != "dialect")
-      throw InputError(place_of(source, key), fmt::format("unknown key '{}'", key),
+      throw InputError(place_of_setting(source, key), fmt::format("unknown key '{}'", key),
                        known_names(key, {"dialect"}));
     if (!value.is_string())
-      throw InputError(place_of(source, key), "'dialect' must be text", what_is_expected);
+      throw InputError(place_of_setting(source, key), "'dialect' must be text", what_is_expected);
     const auto name = value.get<std::string>();
     settings.dialect = find_dialect(name);
     if (!settings.dialect)
-      throw InputError(place_of(source, name), fmt::format("unknown dialect '{}'", name),
+      throw InputError(place_of_setting(source, name), fmt::format("unknown dialect '{}'", name),
                        known_names(name, dialect_names()));
   }
   return settings;

@@ -43,7 +43,7 @@ struct Name {
 constexpr std::string_view bsdf_tags = "bsdf brdf", light_tags = "emitter luminaire",
                            shape_tags = "shape mesh", integrator_tags = "integrator",
                            sampler_tags = "sampler", camera_tags = "camera";
-constexpr Name names[]{
+constexpr Name foreign_names[]{
     {bsdf_tags, "matte", "use diffuse, with albedo for its reflectance"},
     {bsdf_tags, "lambertian", "use diffuse"},
     {bsdf_tags, "conductor", "use roughconductor, with a small alpha, or mirror"},
@@ -195,7 +195,7 @@ std::string foreign_tag_hint(std::string_view tag) {
 }
 
 std::string foreign_plugin_hint(std::string_view tag, std::string_view type) {
-  for (const Name& known : names)
+  for (const Name& known : foreign_names)
     if (has_word(known.tags, tag) && known.type == type) return std::string(known.hint);
   return {};
 }

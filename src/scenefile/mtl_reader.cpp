@@ -30,7 +30,7 @@ struct StatedColor {
 };
 
 /// The statements of one material that mean something here.
-struct Statements {
+struct MaterialStatements {
   std::string name;
   Location where;
   std::optional<StatedColor> kd, ks, ke;
@@ -94,10 +94,10 @@ constexpr std::array<MapOption, 13> map_options{{{"-blendu", 1},
                                                  {"-texres", 1},
                                                  {"-type", 1}}};
 
-class Reader {
+class MtlReader {
  public:
-  Reader(std::filesystem::path directory, std::filesystem::path name,
-         std::shared_ptr<const SourceFile> source)
+  MtlReader(std::filesystem::path directory, std::filesystem::path name,
+            std::shared_ptr<const SourceFile> source)
       : directory_(std::move(directory)),
         name_(std::move(name)),
         source_(std::move(source)),
@@ -259,7 +259,7 @@ class Reader {
     }
   }
 
-  void finish(const Statements& m) {
+  void finish(const MaterialStatements& m) {
     const auto is_known = [&](const MtlMaterial& known) { return known.name == m.name; };
     if (std::any_of(library_.materials.begin(), library_.materials.end(), is_known)) {
       remarks_.add(m.where, "a material of this name has been before: the first counts", "");
@@ -277,7 +277,7 @@ class Reader {
     library_.materials.push_back(std::move(material));
   }
 
-  static Object object(const Statements& m, std::string family, std::string type,
+  static Object object(const MaterialStatements& m, std::string family, std::string type,
                        std::vector<Property> properties) {
     return {std::move(family), std::move(type), {}, m.where, m.where, std::move(properties), {}};
   }
@@ -286,16 +286,16 @@ class Reader {
   }
 
   /// Who states other light and no Kd wants none; who states nothing gets the grey of a mesh without BSDF.
-  static StatedColor kd_of(const Statements& m) {
+  static StatedColor kd_of(const MaterialStatements& m) {
     const float grey = m.ks || m.ke ? 0 : 0.5f;
     return m.kd.value_or(StatedColor{{grey, grey, grey}, m.where});
   }
 
-  static Object diffuse(const Statements& m) {
+  static Object diffuse(const MaterialStatements& m) {
     return object(m, "bsdf", "diffuse", {color("albedo", kd_of(m))});
   }
 
-  Object phong(const Statements& m) {
+  Object phong(const MaterialStatements& m) {
     const StatedColor kd = kd_of(m);
     const Colorf sum = kd.value + m.ks->value;
     if (std::max({sum.r, sum.g, sum.b}) > 1)
@@ -312,7 +312,7 @@ class Reader {
     return object(m, "bsdf", "phong", std::move(properties));
   }
 
-  Object textured(const Statements& m) {
+  Object textured(const MaterialStatements& m) {
     const std::string stated = as_utf8(m.map_kd->text);
     existing_file(stated, m.map_kd->where, directory_ / name_.parent_path(), "an image", "the MTL file");
     if (m.kd && (m.kd->value.r != 1 || m.kd->value.g != 1 || m.kd->value.b != 1))
@@ -332,7 +332,7 @@ class Reader {
   std::shared_ptr<const SourceFile> source_;
   ObjCursor cursor_;
   MtlLibrary library_;
-  std::optional<Statements> current_;
+  std::optional<MaterialStatements> current_;
   std::vector<std::string> passed_over_;  ///< Keys, each once.
   Location passed_over_where_;            ///< The first.
   Remarks remarks_;
@@ -349,7 +349,7 @@ MtlLibrary read_mtl(const std::filesystem::path& directory, const std::filesyste
     throw InputError(whole, fmt::format("this is {}, not {}", format, wanted));
   if (source->text.find('\0') != std::string::npos)
     throw InputError(whole, fmt::format("this is no text, and not {}", wanted));
-  return Reader(directory, name, source).read();
+  return MtlReader(directory, name, source).read();
 }
 
 }  // namespace etendue

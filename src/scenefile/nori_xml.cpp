@@ -89,9 +89,9 @@ struct Element {
   }
 };
 
-class Reader {
+class NoriReader {
  public:
-  explicit Reader(std::shared_ptr<const SourceFile> source) : source_(std::move(source)) {}
+  explicit NoriReader(std::shared_ptr<const SourceFile> source) : source_(std::move(source)) {}
 
   SceneDesc read(std::optional<Dialect> dialect, const std::optional<FolderSettings>& folder);
 
@@ -116,7 +116,7 @@ class Reader {
   std::vector<std::string> warnings_;
 };
 
-Location Reader::place_of(const pugi::xml_node& node) const {
+Location NoriReader::place_of(const pugi::xml_node& node) const {
   std::size_t offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0));
   if (node.type() == pugi::node_element) return at(offset, std::string_view(node.name()).size());
   const std::string_view text = source_->text;
@@ -126,7 +126,7 @@ Location Reader::place_of(const pugi::xml_node& node) const {
 }
 
 /// The tag of the element that is open at the offset `limit`, up to which the text is well-formed.
-std::optional<Location> Reader::innermost_open(std::size_t limit) const {
+std::optional<Location> NoriReader::innermost_open(std::size_t limit) const {
   const std::string_view text = source_->text;
   std::vector<Location> open;
   const auto behind = [&](std::string_view end, std::size_t from) {
@@ -156,7 +156,7 @@ std::optional<Location> Reader::innermost_open(std::size_t limit) const {
   return open.empty() ? std::nullopt : std::optional(open.back());
 }
 
-pugi::xml_node Reader::load_root() {
+pugi::xml_node NoriReader::load_root() {
   // parse_fragment keeps text and elements beside the root, which would otherwise vanish without a word.
   constexpr unsigned int options = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_wconv_attribute |
                                    pugi::parse_eol | pugi::parse_doctype | pugi::parse_fragment;
@@ -193,7 +193,7 @@ pugi::xml_node Reader::load_root() {
   return root;
 }
 
-Element Reader::read_element(const pugi::xml_node& node) const {
+Element NoriReader::read_element(const pugi::xml_node& node) const {
   Element element{node, node.name(), place_of(node), {}};
   const std::string_view text = source_->text;
   std::size_t offset = element.location.offset + element.tag.size();
@@ -230,7 +230,7 @@ Element Reader::read_element(const pugi::xml_node& node) const {
   return element;
 }
 
-std::vector<pugi::xml_node> Reader::child_elements(const Element& element) const {
+std::vector<pugi::xml_node> NoriReader::child_elements(const Element& element) const {
   std::vector<pugi::xml_node> elements;
   for (const pugi::xml_node& child : element.node.children()) {
     if (child.type() != pugi::node_element)
@@ -241,18 +241,18 @@ std::vector<pugi::xml_node> Reader::child_elements(const Element& element) const
   return elements;
 }
 
-void Reader::refuse_children(const Element& element) const {
+void NoriReader::refuse_children(const Element& element) const {
   for (const pugi::xml_node& child : child_elements(element))
     throw InputError(place_of(child),
                      fmt::format("<{}> inside <{}>, where nothing may stand", child.name(), element.tag));
 }
 
-Vec3<double> Reader::read_vector(const Attribute& attribute) const {
+Vec3<double> NoriReader::read_vector(const Attribute& attribute) const {
   const std::vector<double> numbers = parse_reals(attribute.text, attribute.value_location, {3});
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-Transform Reader::read_lookat(const Element& element, std::string_view owner) {
+Transform NoriReader::read_lookat(const Element& element, std::string_view owner) {
   element.allow_only({"origin", "target", "up"});
   const Vec3<double> origin = read_vector(element.get("origin")), target = read_vector(element.get("target"));
   const Vec3<double> up = read_vector(element.get("up"));
@@ -272,7 +272,7 @@ Transform Reader::read_lookat(const Element& element, std::string_view owner) {
   return frame;
 }
 
-Transform Reader::read_operation(const Element& element, std::string_view owner) {
+Transform NoriReader::read_operation(const Element& element, std::string_view owner) {
   if (!contains(operation_tags, element.tag))
     throw InputError(element.location, fmt::format("<{}> is not a part of a transform", element.tag),
                      known_names(element.tag, operation_tags));
@@ -304,7 +304,7 @@ Transform Reader::read_operation(const Element& element, std::string_view owner)
   return read_lookat(element, owner);
 }
 
-Transform Reader::read_operations(const Element& element, std::string_view owner) {
+Transform NoriReader::read_operations(const Element& element, std::string_view owner) {
   Transform transform;
   // Nori: what is written later acts later, so it stands on the left.
   for (const pugi::xml_node& child : child_elements(element))
@@ -312,7 +312,7 @@ Transform Reader::read_operations(const Element& element, std::string_view owner
   return transform;
 }
 
-Property::Value Reader::read_value(const Element& element, const Attribute& value) const {
+Property::Value NoriReader::read_value(const Element& element, const Attribute& value) const {
   const std::string& text = value.text;
   const Location& where = value.value_location;
   if (element.tag == "boolean") return parse_boolean(text, where);
@@ -326,7 +326,7 @@ Property::Value Reader::read_value(const Element& element, const Attribute& valu
   return Vec3<double>{numbers[0], numbers[1], numbers[2]};
 }
 
-Property Reader::read_property(const Element& element, std::string_view owner) {
+Property NoriReader::read_property(const Element& element, std::string_view owner) {
   element.allow_only({"name", "value"});
   const Attribute& name = element.get("name");
   if (name.text.empty())
@@ -351,7 +351,7 @@ Property Reader::read_property(const Element& element, std::string_view owner) {
   return property;
 }
 
-Object Reader::read_object(const Element& element, int level) {
+Object NoriReader::read_object(const Element& element, int level) {
   if (level > most_levels)
     throw InputError(element.location, fmt::format("elements are nested more than {} deep", most_levels));
   std::vector<std::string> attributes{"type", "name"};
@@ -404,7 +404,7 @@ Object Reader::read_object(const Element& element, int level) {
   return object;
 }
 
-SceneDesc Reader::read(std::optional<Dialect> dialect, const std::optional<FolderSettings>& folder) {
+SceneDesc NoriReader::read(std::optional<Dialect> dialect, const std::optional<FolderSettings>& folder) {
   const Element root = read_element(load_root());
   if (root.tag != "scene" && root.tag != "test")
     throw InputError(root.location, fmt::format("the root element is <{}>", root.tag),
@@ -440,7 +440,7 @@ SceneDesc Reader::read(std::optional<Dialect> dialect, const std::optional<Folde
 
 SceneDesc read_nori_xml(const std::filesystem::path& file, std::optional<Dialect> dialect) {
   const std::optional<FolderSettings> folder = folder_settings_of(file);
-  SceneDesc scene = Reader(read_text_file(file)).read(dialect, folder);
+  SceneDesc scene = NoriReader(read_text_file(file)).read(dialect, folder);
   if (folder) scene.settings_file = folder->file;
   scene.directory = file.parent_path();
   split_by_materials(scene);

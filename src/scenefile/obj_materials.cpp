@@ -31,7 +31,7 @@ struct ObjMaterials {
 };
 
 template <class T>
-const T* value_of(const Object& object, std::string_view name) {
+const T* value_of_property(const Object& object, std::string_view name) {
   for (const Property& property : object.properties)
     if (property.name == name) return std::get_if<T>(&property.value);
   return nullptr;
@@ -49,7 +49,7 @@ class Splitter {
 
   void split_inside(Object& parent) {
     const auto asks = [](const Object& object) {
-      const bool* materials = value_of<bool>(object, "materials");
+      const bool* materials = value_of_property<bool>(object, "materials");
       return object.type == "obj" && materials && *materials;
     };
     if (std::none_of(parent.children.begin(), parent.children.end(), asks)) {
@@ -68,7 +68,7 @@ class Splitter {
 
  private:
   void split(Object mesh, std::vector<Object>& parts) {
-    const std::string* filename = value_of<std::string>(mesh, "filename");
+    const std::string* filename = value_of_property<std::string>(mesh, "filename");
     std::error_code error;
     if (!filename || !fs::is_regular_file(scene_.directory / *filename, error)) {
       parts.push_back(std::move(mesh));
@@ -79,7 +79,7 @@ class Splitter {
       throw InputError(place_of_property(mesh, "materials"),
                        fmt::format("'{}' names no library of materials", *filename),
                        "it has no mtllib statement; export it with its materials");
-    const std::string* only = value_of<std::string>(mesh, "usemtl");
+    const std::string* only = value_of_property<std::string>(mesh, "usemtl");
     bool is_own_used = false;
     for (const Named& used : obj.used) {
       if (only && *only != used.name) continue;

@@ -41,7 +41,7 @@ TypeNames names_of(Type type) {
   throw std::logic_error("a parameter of no type");
 }
 
-std::string label(const Object& object) {
+std::string object_text(const Object& object) {
   return object.type.empty() ? object.family : fmt::format("{} '{}'", object.family, object.type);
 }
 
@@ -123,8 +123,8 @@ Property::Value convert(const Property& property, const Parameter& parameter, co
     case Type::vector:
       if (std::holds_alternative<Vec3<double>>(value)) return value;
       if (std::holds_alternative<Vec2<double>>(value))
-        throw InputError(property.value_location,
-                         fmt::format("'{}' of {} needs 3 numbers, found 2", property.name, label(object)));
+        throw InputError(property.value_location, fmt::format("'{}' of {} needs 3 numbers, found 2",
+                                                              property.name, object_text(object)));
       break;
     case Type::transform:
       if (std::holds_alternative<Transform>(value)) return value;
@@ -132,12 +132,12 @@ Property::Value convert(const Property& property, const Parameter& parameter, co
     case Type::point2:
       if (std::holds_alternative<Vec2<double>>(value)) return value;
       if (std::holds_alternative<Vec3<double>>(value))
-        throw InputError(property.value_location,
-                         fmt::format("'{}' of {} needs 2 numbers, found 3", property.name, label(object)));
+        throw InputError(property.value_location, fmt::format("'{}' of {} needs 2 numbers, found 3",
+                                                              property.name, object_text(object)));
       break;
   }
   throw InputError(property.value_location,
-                   fmt::format("'{}' of {} must be {}, not a <{}>", property.name, label(object),
+                   fmt::format("'{}' of {} must be {}, not a <{}>", property.name, object_text(object),
                                names_of(parameter.type).phrase, property.tag),
                    element_to_write(parameter));
 }
@@ -163,10 +163,10 @@ Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<U
       if (foreign && foreign->is_refused)
         throw InputError(property.name_location,
                          fmt::format("'{}' of {} is not known here, and would change the image",
-                                     property.name, label(object)),
+                                     property.name, object_text(object)),
                          foreign->hint);
       unread.push_back({format_message(
-          property.name_location, fmt::format("unknown key '{}' of {}", property.name, label(object)),
+          property.name_location, fmt::format("unknown key '{}' of {}", property.name, object_text(object)),
           foreign                     ? std::string(foreign->hint)
           : plugin.parameters.empty() ? "it has no keys at all; was this meant for another element?"
                                       : known_names(property.name, names_of(plugin.parameters)))});
@@ -176,16 +176,17 @@ Parameters::Parameters(const Object& object, const Plugin& plugin, std::vector<U
       throw InputError(property.name_location,
                        texture(property.name)
                            ? fmt::format("'{}' of {} is stated twice: as a value and as a texture",
-                                         property.name, label(object))
-                           : fmt::format("'{}' of {} is stated twice", property.name, label(object)));
+                                         property.name, object_text(object))
+                           : fmt::format("'{}' of {} is stated twice", property.name, object_text(object)));
     entries_.push_back({&*parameter, convert(property, *parameter, object), &property});
   }
   for (const Parameter& parameter : plugin.parameters) {
     if (is_stated(parameter.name)) continue;
     if (parameter.is_required)
-      throw InputError(object.location,
-                       fmt::format("{} lacks '{}': {}", label(object), parameter.name, parameter.meaning),
-                       element_to_write(parameter));
+      throw InputError(
+          object.location,
+          fmt::format("{} lacks '{}': {}", object_text(object), parameter.name, parameter.meaning),
+          element_to_write(parameter));
     if (!parameter.default_value.empty()) entries_.push_back({&parameter, parse_default(parameter), nullptr});
   }
 }
@@ -216,12 +217,13 @@ void Parameters::add_texture(const Object& texture, const Plugin& plugin) {
     throw InputError(texture.location, "this <texture> does not say which parameter it stands for",
                      fmt::format("write <texture type=\"{}\" name=\"{}\">", texture.type, textured.front()));
   if (std::find(textured.begin(), textured.end(), texture.name) == textured.end())
-    throw InputError(texture.location,
-                     fmt::format("no parameter '{}' of {} takes a texture", texture.name, label(*object_)),
-                     known_names(texture.name, textured));
+    throw InputError(
+        texture.location,
+        fmt::format("no parameter '{}' of {} takes a texture", texture.name, object_text(*object_)),
+        known_names(texture.name, textured));
   if (is_stated(texture.name))
     throw InputError(texture.location,
-                     fmt::format("a second texture for '{}' of {}", texture.name, label(*object_)));
+                     fmt::format("a second texture for '{}' of {}", texture.name, object_text(*object_)));
   textures_.push_back(&texture);
 }
 
@@ -233,7 +235,7 @@ const Parameters::Entry* Parameters::find(std::string_view name) const {
 
 const Property::Value& Parameters::value(std::string_view name) const {
   if (const Entry* entry = find(name)) return entry->value;
-  throw std::logic_error(fmt::format("{} has no value '{}'", label(*object_), name));
+  throw std::logic_error(fmt::format("{} has no value '{}'", object_text(*object_), name));
 }
 
 bool Parameters::is_stated(std::string_view name) const {
@@ -267,7 +269,7 @@ Colorf nonnegative_color(const Parameters& parameters, std::string_view name) {
     if (!(channel >= 0 && std::isfinite(channel)))
       throw InputError(parameters.location(name),
                        fmt::format("'{}' of {} has a channel of {}; it must be finite and not negative", name,
-                                   label(parameters.object()), channel));
+                                   object_text(parameters.object()), channel));
   return color;
 }
 

@@ -12,10 +12,10 @@
 namespace etendue {
 namespace {
 
-constexpr std::string_view white_space = " \t\r\n";
+constexpr std::string_view xml_white_space = " \t\r\n";
 
 /// The place of `part`, a view into `text`.
-Location place_of(std::string_view part, std::string_view text, const Location& where) {
+Location place_of_part(std::string_view part, std::string_view text, const Location& where) {
   const bool is_verbatim = where.source && where.offset <= where.source->text.size() &&
                            std::string_view(where.source->text).substr(where.offset, text.size()) == text;
   if (!is_verbatim) return where;
@@ -23,15 +23,16 @@ Location place_of(std::string_view part, std::string_view text, const Location& 
           std::max<std::size_t>(part.size(), 1)};
 }
 
-std::vector<std::string_view> split(std::string_view text, const Location& where) {
+std::vector<std::string_view> split_values(std::string_view text, const Location& where) {
   std::vector<std::string_view> tokens;
   bool is_number_due = true;  // At the start and behind a comma.
   for (std::size_t at = 0; at < text.size();) {
-    if (white_space.find(text[at]) != std::string_view::npos) {
+    if (xml_white_space.find(text[at]) != std::string_view::npos) {
       ++at;
     } else if (text[at] == ',') {
       if (is_number_due)
-        throw InputError(place_of(text.substr(at, 1), text, where), "a number is missing before this comma");
+        throw InputError(place_of_part(text.substr(at, 1), text, where),
+                         "a number is missing before this comma");
       is_number_due = true;
       ++at;
     } else {
@@ -59,22 +60,23 @@ T parse_token(std::string_view token, std::string_view text, const Location& whe
   }();
   const bool is_whole = end == last;
   if (error == std::errc::result_out_of_range && is_whole)
-    throw InputError(place_of(token, text, where), fmt::format("'{}' is out of range for {}", token, kind));
+    throw InputError(place_of_part(token, text, where),
+                     fmt::format("'{}' is out of range for {}", token, kind));
   if (error != std::errc() || !is_whole)
-    throw InputError(place_of(token, text, where), fmt::format("'{}' is not {}", token, kind));
+    throw InputError(place_of_part(token, text, where), fmt::format("'{}' is not {}", token, kind));
   if constexpr (std::is_floating_point_v<T>)
     if (!std::isfinite(number))
-      throw InputError(place_of(token, text, where), fmt::format("'{}' is not a finite number", token));
+      throw InputError(place_of_part(token, text, where), fmt::format("'{}' is not a finite number", token));
   return number;
 }
 
 template <class T>
 T parse_single(std::string_view text, const Location& where, std::string_view kind) {
-  const std::vector<std::string_view> tokens = split(text, where);
+  const std::vector<std::string_view> tokens = split_values(text, where);
   if (tokens.empty()) throw InputError(where, fmt::format("the value is empty; expected {}", kind));
   const T number = parse_token<T>(tokens[0], text, where, kind);
   if (tokens.size() > 1)
-    throw InputError(place_of(tokens[1], text, where),
+    throw InputError(place_of_part(tokens[1], text, where),
                      fmt::format("'{}' is one number too many; expected {}", tokens[1], kind),
                      "decimals take a point: 1.5");
   return number;
@@ -83,13 +85,14 @@ T parse_single(std::string_view text, const Location& where, std::string_view ki
 }  // namespace
 
 bool parse_boolean(std::string_view text, const Location& where) {
-  const std::size_t begin = std::min(text.find_first_not_of(white_space), text.size());
-  const std::string_view token = text.substr(begin, text.find_last_not_of(white_space) + 1 - begin);
+  const std::size_t begin = std::min(text.find_first_not_of(xml_white_space), text.size());
+  const std::string_view token = text.substr(begin, text.find_last_not_of(xml_white_space) + 1 - begin);
   std::string lower(token);
   for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   if (lower != "true" && lower != "false")
-    throw InputError(place_of(token, text, where), fmt::format("'{}' is neither 'true' nor 'false'", token));
+    throw InputError(place_of_part(token, text, where),
+                     fmt::format("'{}' is neither 'true' nor 'false'", token));
   return lower == "true";
 }
 
@@ -103,7 +106,7 @@ double parse_real(std::string_view text, const Location& where) {
 
 std::vector<double> parse_reals(std::string_view text, const Location& where,
                                 std::initializer_list<std::size_t> counts) {
-  const std::vector<std::string_view> tokens = split(text, where);
+  const std::vector<std::string_view> tokens = split_values(text, where);
   std::vector<double> numbers;
   for (const std::string_view token : tokens)
     numbers.push_back(parse_token<double>(token, text, where, "a number"));
@@ -114,7 +117,7 @@ std::vector<double> parse_reals(std::string_view text, const Location& where,
     const std::string expected =
         counts.size() == 0 ? "one or more" : fmt::format("{}", fmt::join(counts, " or "));
     const std::size_t most = counts.size() == 0 ? 0 : std::max(counts);
-    throw InputError(numbers.size() > most ? place_of(tokens[most], text, where) : where,
+    throw InputError(numbers.size() > most ? place_of_part(tokens[most], text, where) : where,
                      fmt::format("expected {} numbers, found {}", expected, numbers.size()));
   }
   return numbers;
@@ -158,11 +161,11 @@ Transform parse_matrix(std::string_view text, const Location& where) {
     for (std::size_t begin = 0; begin <= text.size(); ++row) {
       const std::size_t end = std::min(text.find(';', begin), text.size());
       const std::string_view part = text.substr(begin, end - begin);
-      const bool is_trailing = row == 4 && part.find_first_not_of(white_space) == std::string_view::npos;
+      const bool is_trailing = row == 4 && part.find_first_not_of(xml_white_space) == std::string_view::npos;
       if (row == 4 && !is_trailing)
-        throw InputError(place_of(part, text, where), "a matrix has 4 rows; this is one more");
+        throw InputError(place_of_part(part, text, where), "a matrix has 4 rows; this is one more");
       if (!is_trailing) {
-        const std::vector<double> numbers = parse_reals(part, place_of(part, text, where), {4});
+        const std::vector<double> numbers = parse_reals(part, place_of_part(part, text, where), {4});
         entries.insert(entries.end(), numbers.begin(), numbers.end());
       }
       begin = end + 1;

@@ -15,7 +15,7 @@ namespace {
 
 bool is_count(double value) { return std::isfinite(value) && value >= 0; }
 
-double misfit(double observed, double expected) {
+double cell_statistic(double observed, double expected) {
   return (observed - expected) * (observed - expected) / expected;
 }
 
@@ -49,12 +49,12 @@ ChiSquaredTest chi_squared_test(std::span<const double> observed, std::span<cons
       pool_expected += expected[cell];
       ++test.pooled_cells;
     } else {
-      test.statistic += misfit(observed[cell], expected[cell]);
+      test.statistic += cell_statistic(observed[cell], expected[cell]);
       ++terms;
     }
   }
   if (test.pooled_cells > 0) {
-    test.statistic += misfit(pool_observed, pool_expected);
+    test.statistic += cell_statistic(pool_observed, pool_expected);
     ++terms;
   }
 

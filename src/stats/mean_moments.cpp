@@ -11,7 +11,7 @@
 namespace etendue {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_moment = std::numeric_limits<double>::quiet_NaN();
 
 /// Of what differs by less, floats do not tell.
 constexpr double relative_rounding = 1e-5;
@@ -43,7 +43,7 @@ MeanMoments moments_of_mean(std::span<const float> values) {
   double mean = 0, m2 = 0, m3 = 0, m4 = 0;
   for (const float value : values) mean += value;
   mean /= count;
-  if (values.size() < 3) return {mean, unknown, unknown, unknown};
+  if (values.size() < 3) return {mean, unknown_moment, unknown_moment, unknown_moment};
   for (const float value : values) {
     const double deviation = value - mean, sq = deviation * deviation;
     m2 += sq;
@@ -66,7 +66,8 @@ double variance_if_same(const MeanMoments& a, const MeanMoments& b, double step_
 MeanTest test_same_mean(const MeanMoments& a, const MeanMoments& b, double step_a, double step_b) {
   const double difference = a.mean - b.mean,
                rounding = relative_rounding * std::max(std::abs(a.mean), std::abs(b.mean));
-  if (!std::isfinite(difference) || !std::isfinite(a.variance + b.variance)) return {unknown, 0, unknown};
+  if (!std::isfinite(difference) || !std::isfinite(a.variance + b.variance))
+    return {unknown_moment, 0, unknown_moment};
   const double sampled = variance_if_same(a, b, step_a, step_b);
   if (sampled == 0) return {difference, 0, std::abs(difference) <= rounding ? 1.0 : 0.0};
   const double statistic = difference / std::sqrt(sampled + rounding * rounding),

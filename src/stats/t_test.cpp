@@ -13,13 +13,13 @@
 namespace etendue {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_test = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The test of a difference whose standard error is known or estimated with so many degrees of freedom.
 MeanTest test_difference(double difference, double standard_error, double degrees_of_freedom) {
   if (!std::isfinite(difference) || !std::isfinite(standard_error) || standard_error < 0)
-    return {unknown, 0, unknown};
+    return {unknown_test, 0, unknown_test};
   if (standard_error == 0) {
     if (difference == 0) return {0, degrees_of_freedom, 1};
     return {std::copysign(infinity, difference), degrees_of_freedom, 0};
@@ -37,14 +37,14 @@ MeanTest test_difference(double difference, double standard_error, double degree
 }  // namespace
 
 MeanTest t_test(const RunningStatistics& sample, double reference, double variance_floor) {
-  if (sample.count < 2 || !std::isfinite(sample.m2)) return {unknown, 0, unknown};
+  if (sample.count < 2 || !std::isfinite(sample.m2)) return {unknown_test, 0, unknown_test};
   const double variance = std::max(sample.variance(), variance_floor);
   return test_difference(sample.mean - reference, std::sqrt(variance / double(sample.count)),
                          double(sample.count - 1));
 }
 
 MeanTest welch_t_test(const RunningStatistics& a, const RunningStatistics& b) {
-  if (a.count < 2 || b.count < 2) return {unknown, 0, unknown};
+  if (a.count < 2 || b.count < 2) return {unknown_test, 0, unknown_test};
   const double error_a_sq = a.variance() / double(a.count);
   const double error_b_sq = b.variance() / double(b.count);
   const double error_sq = error_a_sq + error_b_sq;

@@ -65,7 +65,7 @@ const Plugin image_texture_plugin{
 namespace {
 
 /// Its pixels and size only.
-ImageTexture read_pixels(const Parameters& parameters, const std::filesystem::path& directory) {
+ImageTexture read_texture_pixels(const Parameters& parameters, const std::filesystem::path& directory) {
   ImageTexture texture;
   const ColorImage image = read_color_image(parameters, "filename", directory, parameters.boolean("raw"));
   texture.width = image.width;
@@ -106,7 +106,7 @@ ImageTexture make_image_texture(const Object& description, TextureFiles& files,
                        parameters.boolean("raw"), parameters.has("layer") ? parameters.text("layer") : "");
   auto known = files.known.find(key);
   if (known == files.known.end())
-    known = files.known.emplace(key, read_pixels(parameters, files.directory)).first;
+    known = files.known.emplace(key, read_texture_pixels(parameters, files.directory)).first;
   ImageTexture texture = known->second;
   texture.interpolation = interpolation;
   texture.wrap = wrap;

@@ -4,11 +4,11 @@ namespace etendue {
 
 namespace {
 
-const Plugin constant_plugin{"texture",
-                             "constant_color",
-                             "One colour everywhere, as without a texture.",
-                             {{"value", Parameter::Type::color, "", "", "The colour", true}},
-                             {}};
+const Plugin constant_texture_plugin{"texture",
+                                     "constant_color",
+                                     "One colour everywhere, as without a texture.",
+                                     {{"value", Parameter::Type::color, "", "", "The colour", true}},
+                                     {}};
 
 /// What several forks call it.
 constexpr std::string_view image_alias_name = "image_texture";
@@ -23,7 +23,7 @@ Plugin image_plugin_alias() {
 }  // namespace
 
 const std::vector<Plugin>& texture_plugins() {
-  static const std::vector<Plugin> plugins{checkerboard_plugin, uv_texture_plugin, constant_plugin,
+  static const std::vector<Plugin> plugins{checkerboard_plugin, uv_texture_plugin, constant_texture_plugin,
                                            image_texture_plugin, image_plugin_alias()};
   return plugins;
 }
@@ -34,8 +34,8 @@ ColorTexture read_color_texture(const Parameters& parameters, std::string_view n
   if (!description) return nonnegative_color(parameters, name);
   if (description->type == checkerboard_plugin.name) return make_checkerboard(*description, unread);
   if (description->type == uv_texture_plugin.name) return make_uv_texture(*description, unread);
-  if (description->type == constant_plugin.name)
-    return nonnegative_color(Parameters(*description, constant_plugin, unread), "value");
+  if (description->type == constant_texture_plugin.name)
+    return nonnegative_color(Parameters(*description, constant_texture_plugin, unread), "value");
   if (description->type == image_texture_plugin.name || description->type == image_alias_name)
     return make_image_texture(*description, files, unread);
   throw unknown_plugin(*description, texture_plugins());

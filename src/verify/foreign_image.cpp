@@ -15,7 +15,7 @@
 namespace etendue {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_value = std::numeric_limits<double>::quiet_NaN();
 
 ColorImage colors_of_size(const std::filesystem::path& file, int width, int height) {
   ColorImage colors = read_colors(file);
@@ -98,7 +98,7 @@ void set_normal(MeanMoments& pixel) {
 
 /// Mean over the pixels that both know of how far they are apart, in units of noise and a fiftieth of the
 /// value, at most 100 each. \param foreign(x, y) NaN: not known
-double misfit(const MomentImage& reference, const std::function<double(int, int)>& foreign) {
+double misfit_of_image(const MomentImage& reference, const std::function<double(int, int)>& foreign) {
   constexpr double most = 100, tolerance = 0.02;
   double sum = 0, count = 0;
   for (int y = 0; y < reference.height; ++y)
@@ -128,13 +128,13 @@ MomentImage shifted_by_half(const MomentImage& image, int dx, int dy) {
   return shifted;
 }
 
-double srgb_from_linear(double linear) {
+double encoded_srgb(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
 /// Of a number that is rounded to 8 bits of sRGB.
 double rounding_variance_8_bit(double linear) {
-  const double srgb = srgb_from_linear(std::max(0.0, linear)),
+  const double srgb = encoded_srgb(std::max(0.0, linear)),
                step = linear_from_srgb(srgb + 0.5 / 255) - linear_from_srgb(std::max(0.0, srgb - 0.5 / 255));
   return step * step / 12;
 }
@@ -151,7 +151,7 @@ ForeignImage read_foreign_image(const ForeignFiles& files, int width, int height
   for (std::size_t k = 0; k < foreign.image.pixels.size(); ++k) {
     const double l = luminance_at(colors.rgb, k);
     const float brightest = std::max({colors.rgb[3 * k], colors.rgb[3 * k + 1], colors.rgb[3 * k + 2]});
-    foreign.image.pixels[k] = {l, unknown, 0, 0};
+    foreign.image.pixels[k] = {l, unknown_value, 0, 0};
     foreign.is_readable.push_back(std::isfinite(l) && !(foreign.is_8_bit && brightest >= 0.999f));
   }
   if (!files.standard_errors.empty()) {
@@ -206,9 +206,9 @@ void estimate_noise(ForeignImage& foreign, const MomentImage& reference) {
 std::optional<std::string> likely_mishap(const ForeignImage& foreign, const MomentImage& reference) {
   const int width = reference.width, height = reference.height;
   const auto at = [&](int x, int y) {
-    if (x < 0 || y < 0 || x >= width || y >= height) return unknown;
+    if (x < 0 || y < 0 || x >= width || y >= height) return unknown_value;
     const std::size_t k = std::size_t(y) * std::size_t(width) + std::size_t(x);
-    return foreign.is_readable[k] ? foreign.image.pixels[k].mean : unknown;
+    return foreign.is_readable[k] ? foreign.image.pixels[k].mean : unknown_value;
   };
   struct Mishap {
     std::string what;
@@ -220,7 +220,7 @@ std::optional<std::string> likely_mishap(const ForeignImage& foreign, const Mome
       {"it is turned by 180 degrees", [&](int x, int y) { return at(width - 1 - x, height - 1 - y); }},
       {"its numbers are sRGB, not linear light", [&](int x, int y) { return linear_from_srgb(at(x, y)); }},
       {"it was taken for sRGB and decoded, though its numbers were linear light",
-       [&](int x, int y) { return srgb_from_linear(std::max(0.0, at(x, y))); }},
+       [&](int x, int y) { return encoded_srgb(std::max(0.0, at(x, y))); }},
   };
   double ours = 0, theirs = 0;
   for (int y = 0; y < height; ++y)
@@ -231,18 +231,18 @@ std::optional<std::string> likely_mishap(const ForeignImage& foreign, const Mome
     mishaps.push_back({fmt::format("it is {:.4g} times as bright everywhere", theirs / ours),
                        [&, scale = ours / theirs](int x, int y) { return at(x, y) * scale; }});
   constexpr double explained = 0.7;  // What may be left of the misfit.
-  double least = explained * misfit(reference, at);
+  double least = explained * misfit_of_image(reference, at);
   std::optional<std::string> best;
   const auto consider = [&](double left, const std::string& what) {
     if (left >= least) return;
     least = left;
     best = what;
   };
-  for (const Mishap& mishap : mishaps) consider(misfit(reference, mishap.undone), mishap.what);
+  for (const Mishap& mishap : mishaps) consider(misfit_of_image(reference, mishap.undone), mishap.what);
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx)
       if (dx != 0 || dy != 0)
-        consider(misfit(shifted_by_half(reference, dx, dy), at),
+        consider(misfit_of_image(shifted_by_half(reference, dx, dy), at),
                  fmt::format("its pixels lie half a pixel off, by {:+.1f}, {:+.1f}", 0.5 * dx, 0.5 * dy));
   return best;
 }

@@ -23,7 +23,7 @@ std::vector<std::int32_t> lights_by_power(const Lights& lights) {
 
 /// Luminance summed over a film. What channels share of their noise is not known: the bound is taken where
 /// they go together.
-MeanMoments sum_of(const Film& film) {
+MeanMoments sum_of_pixels(const Film& film) {
   MeanMoments sum;
   for (int y = 0; y < film.height(); ++y)
     for (int x = 0; x < film.width(); ++x) {
@@ -61,7 +61,7 @@ std::vector<LightDifference> light_differences(const Scene& scene, RenderSetting
   std::vector<LightDifference> differences;
   if (of_a.is_interrupted || of_b.is_interrupted) return differences;
   for (std::size_t k = 0; k < lights.size(); ++k) {
-    const MeanMoments sum_a = sum_of(of_a.layers[k]), sum_b = sum_of(of_b.layers[k]);
+    const MeanMoments sum_a = sum_of_pixels(of_a.layers[k]), sum_b = sum_of_pixels(of_b.layers[k]);
     const double p = test_same_mean(sum_a, sum_b).p_value * double(lights.size());
     if (p < level) differences.push_back({lights[k], sum_a.mean / sum_b.mean, p});
   }

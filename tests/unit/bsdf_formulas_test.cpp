@@ -68,7 +68,7 @@ TEST(Fresnel, ConductorsFollowTheComplexFormula) {
     }
 }
 
-using Kind = MicrofacetDistribution::Kind;
+using DistributionKind = MicrofacetDistribution::Kind;
 
 /// The integral of f over the hemisphere of h, even in the angle from the pole stretched by alpha.
 template <class Function>
@@ -91,7 +91,7 @@ double integral_over_normals(double alpha, const Function& f) {
 }
 
 TEST(MicrofacetDistribution, NormalsCoverTheSurfaceAndVisibleOnesItsProjection) {
-  for (const Kind kind : {Kind::beckmann, Kind::ggx})
+  for (const DistributionKind kind : {DistributionKind::beckmann, DistributionKind::ggx})
     for (const float alpha : {0.001f, 0.1f, 0.5f, 1.0f, 5.0f}) {
       const MicrofacetDistribution distribution{kind, alpha};
       EXPECT_NEAR(integral_over_normals(alpha, [&](const Vec3f& h) { return distribution.density(h) * h.z; }),
@@ -108,7 +108,7 @@ TEST(MicrofacetDistribution, NormalsCoverTheSurfaceAndVisibleOnesItsProjection) 
 }
 
 TEST(MicrofacetDistribution, VisibleSlopesOfBeckmannInvertTheirDistribution) {
-  const MicrofacetDistribution distribution{Kind::beckmann, 1};
+  const MicrofacetDistribution distribution{DistributionKind::beckmann, 1};
   for (const float z : {1.0f, 0.9999f, 0.99f, 0.95f, 0.9f, 0.7f, 0.4f, 0.1f, 0.01f, 0.0f}) {
     const double sine = std::sqrt((1 - double(z)) * (1 + double(z)));
     // How many normals with a slope below x wo sees: Heitz and d'Eon 2014, supplement.
@@ -127,7 +127,7 @@ TEST(Microfacet, IsTheFormulaOfNori) {
   Microfacet model;
   model.kd = {0.2f, 0.1f, 0.4f};
   model.ks = model.coat_probability = 0.6f;
-  model.distribution = {Kind::beckmann, 0.3f};
+  model.distribution = {DistributionKind::beckmann, 0.3f};
   model.indices = {1.5f, 1 / 1.5f};
   const auto shadowing = [](double cosine) {
     const double b = cosine / (0.3 * std::sqrt(1 - cosine * cosine));

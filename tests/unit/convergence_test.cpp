@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-struct Picture {
+struct CheckedPicture {
   Film film;
   ReplicateLuminances luminances;
   ConvergenceChecks checks() const {
@@ -18,8 +18,9 @@ struct Picture {
   }
 };
 
-Picture picture(int side_px, int replicates, const std::function<double(int replicate)>& draw) {
-  Picture picture{Film(side_px, side_px), ReplicateLuminances(side_px, side_px, replicates)};
+CheckedPicture checked_picture(int side_px, int replicates,
+                               const std::function<double(int replicate)>& draw) {
+  CheckedPicture picture{Film(side_px, side_px), ReplicateLuminances(side_px, side_px, replicates)};
   for (int y = 0; y < side_px; ++y)
     for (int x = 0; x < side_px; ++x) {
       std::vector<Color<double>> means;
@@ -36,7 +37,7 @@ Picture picture(int side_px, int replicates, const std::function<double(int repl
 TEST(Convergence, SaysHowFarTheLargestReplicateWouldRaiseTheMean) {
   // Four pixels of mean 1; one has replicates 0, 0, 0, 4: a fifth replicate of 4 would make it 1.6.
   int drawn = 0;
-  const Picture found = picture(2, 4, [&](int) {
+  const CheckedPicture found = checked_picture(2, 4, [&](int) {
     const int i = drawn++;
     return i < 4 ? (i == 3 ? 4.0 : 0.0) : 1.0;
   });
@@ -46,7 +47,7 @@ TEST(Convergence, SaysHowFarTheLargestReplicateWouldRaiseTheMean) {
 TEST(Convergence, FindsTheRootOfTheSamplesWhereReplicatesAreIndependent) {
   std::mt19937_64 engine(1);
   std::lognormal_distribution<double> law(0, 0.5);
-  const ConvergenceChecks checks = picture(64, 16, [&](int) { return law(engine); }).checks();
+  const ConvergenceChecks checks = checked_picture(64, 16, [&](int) { return law(engine); }).checks();
   EXPECT_NEAR(checks.slope, -0.5, 0.05);
   EXPECT_LT(checks.slope_low, checks.slope);
   EXPECT_NEAR(checks.slope_high - checks.slope, checks.slope - checks.slope_low, 1e-12);
@@ -58,14 +59,14 @@ TEST(Convergence, FindsASteeperSlopeWhereReplicatesComplementEachOther) {
   std::uniform_real_distribution<double> law(0, 1);
   // Each in its own stratum, two neighbours in opposite ones.
   const ConvergenceChecks checks =
-      picture(64, 8, [&](int k) { return (k % 2 == 0 ? k : 9 - k) + law(engine); }).checks();
+      checked_picture(64, 8, [&](int k) { return (k % 2 == 0 ? k : 9 - k) + law(engine); }).checks();
   EXPECT_LT(checks.slope_high, -0.5);
 }
 
 TEST(Convergence, PValuesOfHalvesAreFlatWhereNothingChanges) {
   std::mt19937_64 engine(3);
   std::normal_distribution<double> law(5, 1);
-  const ConvergenceChecks checks = picture(64, 16, [&](int) { return law(engine); }).checks();
+  const ConvergenceChecks checks = checked_picture(64, 16, [&](int) { return law(engine); }).checks();
   EXPECT_EQ(checks.pixels_tested(), 64 * 64);
   for (const std::int64_t count : checks.p_values) EXPECT_NEAR(double(count), 409.6, 5 * std::sqrt(409.6));
   EXPECT_NEAR(double(checks.p_values_below_1_percent), 41, 5 * std::sqrt(41.0));
@@ -74,15 +75,16 @@ TEST(Convergence, PValuesOfHalvesAreFlatWhereNothingChanges) {
 TEST(Convergence, PValuesOfHalvesGatherAtZeroWhereTheMeanDrifts) {
   std::mt19937_64 engine(4);
   std::normal_distribution<double> law(0, 1);
-  const ConvergenceChecks checks = picture(64, 16, [&](int k) { return 0.2 * k + law(engine); }).checks();
+  const ConvergenceChecks checks =
+      checked_picture(64, 16, [&](int k) { return 0.2 * k + law(engine); }).checks();
   EXPECT_GT(checks.p_values[0], 2000);
 }
 
 TEST(Convergence, IsUnknownOfOneReplicateAndWhereNoneAreKept) {
-  EXPECT_TRUE(std::isnan(picture(2, 1, [](int) { return 1.0; }).checks().rise_by_largest));
-  const Film film = picture(2, 8, [](int k) { return 1.0 + k; }).film;
+  EXPECT_TRUE(std::isnan(checked_picture(2, 1, [](int) { return 1.0; }).checks().rise_by_largest));
+  const Film film = checked_picture(2, 8, [](int k) { return 1.0 + k; }).film;
   EXPECT_TRUE(std::isnan(convergence_checks(film, {}, {0, 0, 2, 2}).slope));
-  EXPECT_TRUE(std::isnan(picture(8, 2, [](int k) { return 1.0 + k; }).checks().slope));
+  EXPECT_TRUE(std::isnan(checked_picture(8, 2, [](int k) { return 1.0 + k; }).checks().slope));
 }
 
 }  // namespace

@@ -19,14 +19,12 @@ namespace {
 
 using Vec3d = Vec3<double>;
 
-Vec3d wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
 struct Triangles {
   std::vector<Vec3f> positions;
   std::vector<std::int32_t> indices;
 
   Vec3d corner(std::size_t triangle, std::size_t k) const {
-    return wide(positions[std::size_t(indices[3 * triangle + k])]);
+    return widen(positions[std::size_t(indices[3 * triangle + k])]);
   }
   Vec3d vector_area(std::size_t triangle) const {
     return cross(corner(triangle, 1) - corner(triangle, 0), corner(triangle, 2) - corner(triangle, 0)) * 0.5;
@@ -48,7 +46,7 @@ void expect_partition(const Triangles& mesh, const ConvexPieces& pieces, double 
     const std::size_t count = std::size_t(pieces.first_corner[std::size_t(piece) + 1]) - first;
     ASSERT_GE(count, 3u);
     ASSERT_LE(count, std::size_t(most_corners));
-    const auto corner = [&](std::size_t k) { return wide(pieces.corners[first + k % count]); };
+    const auto corner = [&](std::size_t k) { return widen(pieces.corners[first + k % count]); };
     Vec3d across{0, 0, 0};
     double size = 0;
     for (std::size_t k = 1; k + 1 < count; ++k) {

@@ -62,7 +62,7 @@ class CourseCheck : public testing::Test {
 TEST_F(CourseCheck, PassesTheRightOne) {
   const IntegratorCheck found = check(ETENDUE_BINARY_DIR "/tests/libcourse_light_integrator.so");
   for (const CheckedProperty& property : found.properties)
-    EXPECT_EQ(property.verdict, Verdict::right) << property.name << ": " << property.what;
+    EXPECT_EQ(property.verdict, PropertyVerdict::right) << property.name << ": " << property.what;
   EXPECT_TRUE(found.is_right());
   EXPECT_EQ(found.diagnosis.samples_wrong, 0);
   EXPECT_GT(found.diagnosis.samples_compared, 1000);

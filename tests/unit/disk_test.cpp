@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-constexpr double turn = 6.283185307179586;
+constexpr double whole_turn = 6.283185307179586;
 
 TEST(Disk, IsMetWhereItsPlaneIsWithinTheEllipse) {
   const Transform transforms[] = {
@@ -89,7 +89,7 @@ TEST(SurfaceUv, OfSpheres) {
     const Vec3<double> n = normalize(Vec3<double>{normal(engine), normal(engine), normal(engine)});
     const Vec2f at = sphere_uv<float>({float(n.x), float(n.y), float(n.z)}, 0.0f);
     EXPECT_TRUE(at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1);
-    const double phi = turn * at.x, theta = 0.5 * turn * at.y;
+    const double phi = whole_turn * at.x, theta = 0.5 * whole_turn * at.y;
     EXPECT_NEAR(std::sin(theta) * std::cos(phi), n.x, 2e-6);
     EXPECT_NEAR(std::sin(theta) * std::sin(phi), n.y, 2e-6);
     EXPECT_NEAR(std::cos(theta), n.z, 2e-6);

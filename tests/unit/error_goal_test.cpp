@@ -11,31 +11,31 @@
 namespace etendue {
 namespace {
 
-constexpr int side_px = 128, replicates = 16;
+constexpr int side_px = 128, replicate_count = 16;
 
-struct Picture {
+struct BarredPicture {
   Film film{side_px, side_px};
   std::vector<PixelInterval> intervals;
 };
 
 /// \param deviation of a pixel's mean \param bars_over_errors how much more its replicates vary than such
 /// means say
-Picture picture(const std::function<double(int x, int y)>& deviation, double bars_over_errors,
-                std::uint64_t seed) {
+BarredPicture barred_picture(const std::function<double(int x, int y)>& deviation, double bars_over_errors,
+                             std::uint64_t seed) {
   std::mt19937_64 numbers(seed);
   std::normal_distribution<double> normal;
-  Picture picture;
-  ReplicateLuminances luminances(side_px, side_px, replicates);
-  std::vector<Color<double>> means(replicates);
+  BarredPicture picture;
+  ReplicateLuminances luminances(side_px, side_px, replicate_count);
+  std::vector<Color<double>> means(replicate_count);
   for (int y = 0; y < side_px; ++y)
     for (int x = 0; x < side_px; ++x) {
       std::vector<double> draws;
       double sum = 0;
-      for (int i = 0; i < replicates; ++i) sum += draws.emplace_back(normal(numbers));
+      for (int i = 0; i < replicate_count; ++i) sum += draws.emplace_back(normal(numbers));
       const double mean = 1 + deviation(x, y) * normal(numbers);
       for (std::size_t i = 0; i < means.size(); ++i) {
-        const double value = mean + deviation(x, y) * bars_over_errors * std::sqrt(double(replicates)) *
-                                        (draws[i] - sum / replicates);
+        const double value = mean + deviation(x, y) * bars_over_errors * std::sqrt(double(replicate_count)) *
+                                        (draws[i] - sum / replicate_count);
         means[i] = {value, value, value};
       }
       picture.film.at(x, y) = combine_replicates(means, 0);
@@ -45,7 +45,7 @@ Picture picture(const std::function<double(int x, int y)>& deviation, double bar
   return picture;
 }
 
-DistanceFromGoal distance(const Picture& a, const Picture& b, const ErrorGoal& goal) {
+DistanceFromGoal distance(const BarredPicture& a, const BarredPicture& b, const ErrorGoal& goal) {
   return distance_from({a.film, b.film, a.intervals, b.intervals}, goal);
 }
 
@@ -54,7 +54,7 @@ double of_few(int x, int) { return x < side_px / 20 + 1 ? 0.1 : 0.01; }
 
 TEST(DistanceFromGoal, IsThatOfTheErrorsNotOfTheBars) {
   for (const double wider : {1.0, 3.0}) {
-    const Picture a = picture(of_few, wider, 1), b = picture(of_few, wider, 2);
+    const BarredPicture a = barred_picture(of_few, wider, 1), b = barred_picture(of_few, wider, 2);
     const DistanceFromGoal most = distance(a, b, {.relative = 0.01, .share = 0.99}),
                            fewer = distance(a, b, {.relative = 0.01, .share = 0.5});
     EXPECT_NEAR(most.factor, 1.96 * 0.1 / 0.01, 6) << wider;
@@ -65,13 +65,13 @@ TEST(DistanceFromGoal, IsThatOfTheErrorsNotOfTheBars) {
 }
 
 TEST(DistanceFromGoal, KnowsNoLightFromNoError) {
-  Picture dark;
+  BarredPicture dark;
   for (int i = 0; i < side_px * side_px; ++i) {
-    dark.film.at(i % side_px, i / side_px).count = replicates;
+    dark.film.at(i % side_px, i / side_px).count = replicate_count;
     dark.intervals.push_back({{}, 0, 0, IntervalRule::black});
   }
   EXPECT_EQ(distance(dark, dark, {.relative = 0.01}).factor, std::numeric_limits<double>::infinity());
-  const Picture exact = picture([](int, int) { return 0.0; }, 1, 1);
+  const BarredPicture exact = barred_picture([](int, int) { return 0.0; }, 1, 1);
   EXPECT_EQ(distance(exact, exact, {.relative = 0.01}).factor, 0);
 }
 
@@ -79,11 +79,11 @@ TEST(DistanceFromGoal, KnowsNoLightFromNoError) {
 TEST(DistanceFromGoal, OfBlackPixelsAmongLitOnesIsThatOfTheLitOnes) {
   std::mt19937_64 numbers(5);
   std::bernoulli_distribution hit(1.0 / 300);
-  Picture pictures[2];
-  for (Picture& one : pictures) {
-    ReplicateLuminances luminances(side_px, side_px, replicates);
+  BarredPicture pictures[2];
+  for (BarredPicture& one : pictures) {
+    ReplicateLuminances luminances(side_px, side_px, replicate_count);
     for (int i = 0; i < side_px * side_px; ++i) {
-      std::vector<Color<double>> means(replicates);
+      std::vector<Color<double>> means(replicate_count);
       for (Color<double>& mean : means) mean.r = mean.g = mean.b = hit(numbers) ? 300 : 0;
       one.film.at(i % side_px, i / side_px) = combine_replicates(means, 0);
       luminances.add(i % side_px, i / side_px, 0, means);

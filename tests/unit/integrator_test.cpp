@@ -37,7 +37,7 @@ Made make(const std::string& type, Dialect dialect, const std::string& inside = 
   return made;
 }
 
-std::string error_of(const std::string& type, Dialect dialect, const std::string& inside) {
+std::string error_of_integrator(const std::string& type, Dialect dialect, const std::string& inside) {
   return test::error_of([&] { make(type, dialect, inside); });
 }
 
@@ -104,7 +104,7 @@ TEST(IntegratorKeys, TheHeuristicIsThatOfTheHandoutsUnlessStated) {
     EXPECT_EQ(heuristic_of(power.settings), Heuristic::power) << name;
     EXPECT_EQ(heuristic_name(power.settings), "power");
     EXPECT_TRUE(power.unread.empty());
-    EXPECT_THAT(error_of(name, Dialect::nori, text_xml("heuristic", "powr")),
+    EXPECT_THAT(error_of_integrator(name, Dialect::nori, text_xml("heuristic", "powr")),
                 testing::AllOf(HasSubstr("s.xml:3:33: unknown heuristic 'powr'"), HasSubstr("^~~"),
                                HasSubstr("did you mean 'power'?")));
   }
@@ -198,14 +198,14 @@ TEST(HeuristicOfAnIntegrator, IsThatAskedForWhereThereIsOne) {
 }
 
 TEST(IntegratorKeys, ThatAreWrongAreExplained) {
-  EXPECT_THAT(error_of("direct", Dialect::nori, text_xml("samplingMethod", "emiter")),
+  EXPECT_THAT(error_of_integrator("direct", Dialect::nori, text_xml("samplingMethod", "emiter")),
               testing::AllOf(HasSubstr("s.xml:3:38: unknown samplingMethod 'emiter'"), HasSubstr("^~~~~~"),
                              HasSubstr("did you mean 'emitter'?"), HasSubstr("brdf"), HasSubstr("mis")));
-  EXPECT_THAT(error_of("direct", Dialect::nori, count_xml("brdfSamples", 0)),
+  EXPECT_THAT(error_of_integrator("direct", Dialect::nori, count_xml("brdfSamples", 0)),
               HasSubstr("samplingMethod 'brdf' with 0 samples: the image would be black"));
-  EXPECT_THAT(error_of("direct", Dialect::nori, count_xml("emitterSamples", -1)),
+  EXPECT_THAT(error_of_integrator("direct", Dialect::nori, count_xml("emitterSamples", -1)),
               HasSubstr("'emitterSamples' is -1; it must be from 0 to 65536"));
-  EXPECT_THAT(error_of("path_miss", Dialect::nori, ""),
+  EXPECT_THAT(error_of_integrator("path_miss", Dialect::nori, ""),
               testing::AllOf(HasSubstr("path_miss"), HasSubstr("did you mean 'path_mis'?")));
 }
 

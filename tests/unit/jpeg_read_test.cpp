@@ -16,9 +16,9 @@ namespace {
 
 using testing::HasSubstr;
 
-double linear(double encoded) { return std::pow((encoded + 0.055) / 1.055, 2.4); }
+double linear_from_jpeg(double encoded) { return std::pow((encoded + 0.055) / 1.055, 2.4); }
 
-struct Kind {
+struct JpegKind {
   J_COLOR_SPACE space = JCS_RGB;
   int components = 3;
   bool is_progressive = false;
@@ -28,7 +28,7 @@ struct Kind {
 class JpegRead : public test::ImageFileTest {
  protected:
   /// 16 x 24 pixels: the upper 16 rows have these values, the lower 8 are black.
-  void write(const std::vector<unsigned char>& color, const Kind& kind) const {
+  void write(const std::vector<unsigned char>& color, const JpegKind& kind) const {
     std::FILE* stream = std::fopen(file.c_str(), "wb");
     jpeg_error_mgr errors;
     jpeg_compress_struct jpeg{};
@@ -77,12 +77,12 @@ TEST_F(JpegRead, BaselineProgressiveAndGrey) {
     const ColorImage image = read();
     EXPECT_EQ(image.width, 16);
     ASSERT_EQ(image.height, 24);
-    expect_near(pixel(image, 16 * 4), linear(r), linear(g), linear(b));
+    expect_near(pixel(image, 16 * 4), linear_from_jpeg(r), linear_from_jpeg(g), linear_from_jpeg(b));
     expect_near(pixel(image, 16 * 23), 0, 0, 0);
     expect_near(pixel(read({true, ""}), 0), r, g, b);
   }
   write({120}, {.space = JCS_GRAYSCALE, .components = 1});
-  expect_near(pixel(read(), 0), linear(g), linear(g), linear(g));
+  expect_near(pixel(read(), 0), linear_from_jpeg(g), linear_from_jpeg(g), linear_from_jpeg(g));
 }
 
 TEST_F(JpegRead, InksAreRefused) {
@@ -107,7 +107,7 @@ TEST_F(JpegRead, ExifTurnsThePicture) {
   const ColorImage image = read();
   EXPECT_EQ(image.width, 24);
   expect_near(pixel(image, 0), 0, 0, 0);
-  expect_near(pixel(image, 23), linear(r), linear(g), linear(b));
+  expect_near(pixel(image, 23), linear_from_jpeg(r), linear_from_jpeg(g), linear_from_jpeg(b));
   EXPECT_EQ(read({true, ""}).height, 16);
 }
 

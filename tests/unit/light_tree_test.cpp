@@ -19,8 +19,6 @@
 namespace etendue {
 namespace {
 
-Vec3<double> wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
 struct TreeCase {
   const char* name;
   Lights lights;
@@ -123,11 +121,12 @@ TEST(LightTree, ClustersHoldWhatTheySay) {
           const Vec3<double> at{corner & 1 ? bounds.box.low.x : bounds.box.high.x,
                                 corner & 2 ? bounds.box.low.y : bounds.box.high.y,
                                 corner & 4 ? bounds.box.low.z : bounds.box.high.z};
-          ASSERT_LE(length_sq(at - wide(cluster.center)), double(cluster.radius_sq)) << c.name;
+          ASSERT_LE(length_sq(at - widen(cluster.center)), double(cluster.radius_sq)) << c.name;
         }
         if (cluster.cos_normals > -1) {
           ASSERT_GE(bounds.cos_emission, 0) << c.name << ": shines beyond a right angle";
-          const double between = std::acos(std::clamp(dot(wide(bounds.axis), wide(cluster.axis)), -1.0, 1.0));
+          const double between =
+              std::acos(std::clamp(dot(widen(bounds.axis), widen(cluster.axis)), -1.0, 1.0));
           ASSERT_LE(between + std::acos(double(bounds.cos_normals)),
                     std::acos(double(cluster.cos_normals)) + 1e-3)
               << c.name;
@@ -165,7 +164,7 @@ double least_cosines(const LightTree& tree, std::int32_t place, const Receiver<f
   double least = 1;
   for (std::int32_t k = tree.leaves()[place];; k = tree.clusters()[k].parent) {
     const LightCluster& cluster = tree.clusters()[k];
-    const double distance_sq = length_sq(wide(cluster.center) - wide(receiver.position));
+    const double distance_sq = length_sq(widen(cluster.center) - widen(receiver.position));
     const double nearness = cluster.power / std::max(distance_sq, 0.25 * cluster.radius_sq);
     least = std::min(least, importance(broadcast<float>(cluster), receiver).value / nearness);
     if (k == 0) return least;

@@ -25,11 +25,11 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 const std::string camera = camera_xml({0, 0, 4}, {0, 0, 0}, 30, 4, "independent");
-const std::string shape = rectangle_xml({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, "");
+const std::string unlit_rectangle = rectangle_xml({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, "");
 
 /// The message of the error that these lights are.
-std::string error_of(const std::string& lights) {
-  return test::error_of([&] { load_scene_text(camera + shape + lights); });
+std::string error_of_lights(const std::string& lights) {
+  return test::error_of([&] { load_scene_text(camera + unlit_rectangle + lights); });
 }
 
 class EnvmapFile : public testing::Test {
@@ -39,14 +39,14 @@ class EnvmapFile : public testing::Test {
   LoadedScene load_file(const Write& write) const {
     write(folder_.path() / "map.exr");
     std::ofstream(folder_.path() / "scene.xml")
-        << "<scene>" << camera << shape
+        << "<scene>" << camera << unlit_rectangle
         << R"(<emitter type="envmap"><string name="filename" value="map.exr"/></emitter></scene>)";
     return load_scene(read_nori_xml(folder_.path() / "scene.xml", Dialect::nori));
   }
   LoadedScene load(const Image& image) const {
     return load_file([&](const std::filesystem::path& file) { write_exr(file, image); });
   }
-  std::string error_of(const Image& image) const {
+  std::string error_of_lights(const Image& image) const {
     return test::error_of([&] { load(image); });
   }
   template <class Write>
@@ -65,19 +65,19 @@ class EnvmapFile : public testing::Test {
 };
 
 TEST_F(EnvmapFile, IsNamedWithTheTexelThatCannotBeUsed) {
-  EXPECT_EQ(error_of(grey(1, 0)), "");
-  EXPECT_THAT(error_of(grey(1, NAN)),
+  EXPECT_EQ(error_of_lights(grey(1, 0)), "");
+  EXPECT_THAT(error_of_lights(grey(1, NAN)),
               AllOf(HasSubstr("scene.xml:"), HasSubstr("map.exr: texel (2, 1) is 1 nan 1")));
-  EXPECT_THAT(error_of(grey(1, -0.5f)), HasSubstr("map.exr: texel (2, 1) is 1 -0.5 1"));
-  EXPECT_THAT(error_of(grey(1, std::numeric_limits<float>::infinity())),
+  EXPECT_THAT(error_of_lights(grey(1, -0.5f)), HasSubstr("map.exr: texel (2, 1) is 1 -0.5 1"));
+  EXPECT_THAT(error_of_lights(grey(1, std::numeric_limits<float>::infinity())),
               HasSubstr("texel (2, 1) is 1 inf 1"));
-  EXPECT_THAT(error_of(grey(1, 2e30f)), HasSubstr("number from 0 to 1e+30"));
-  EXPECT_THAT(error_of(grey(0, 0)), HasSubstr("map.exr: all texels are 0"));
+  EXPECT_THAT(error_of_lights(grey(1, 2e30f)), HasSubstr("number from 0 to 1e+30"));
+  EXPECT_THAT(error_of_lights(grey(0, 0)), HasSubstr("map.exr: all texels are 0"));
 }
 
 TEST_F(EnvmapFile, MayBeGreyButNotWithoutColour) {
   EXPECT_EQ(load({2, 1, {{"Y", {1, 2}}}, {}}).scene.lights.infinite_count(), 1);
-  EXPECT_THAT(error_of({2, 1, {{"G", {1, 2}}, {"Z", {1, 2}}}, {}}),
+  EXPECT_THAT(error_of_lights({2, 1, {{"G", {1, 2}}, {"Z", {1, 2}}}, {}}),
               AllOf(HasSubstr("'map.exr' has no colours: these are the channels R, G and B, or Y"),
                     HasSubstr("it has: G, Z")));
 }
@@ -113,8 +113,9 @@ TEST(EnvmapFiles, OfOthersAreReadOrRefusedWithAReason) {
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
   int used = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string message = error_of("<emitter type=\"envmap\"><string name=\"filename\" value=\"" +
-                                         std::filesystem::absolute(entry.path()).string() + "\"/></emitter>");
+    const std::string message =
+        error_of_lights("<emitter type=\"envmap\"><string name=\"filename\" value=\"" +
+                        std::filesystem::absolute(entry.path()).string() + "\"/></emitter>");
     if (message.empty())
       ++used;
     else
@@ -128,7 +129,7 @@ TEST(EnvmapFiles, OfOthersAreReadOrRefusedWithAReason) {
 
 TEST(LoadLight, RefusesWhatMakesNoSense) {
   const auto light = [](const std::string& type, const std::string& inside) {
-    return error_of("<emitter type=\"" + type + "\">" + inside + "</emitter>");
+    return error_of_lights("<emitter type=\"" + type + "\">" + inside + "</emitter>");
   };
   EXPECT_THAT(light("area", ""), HasSubstr("has no place inside <scene>"));
   EXPECT_THAT(light("sky", ""), AllOf(HasSubstr("unknown emitter 'sky'"), HasSubstr("envmap")));
@@ -172,7 +173,7 @@ TEST(LoadLight, TakesLightsInTheSceneAndInsideShapes) {
 
 TEST(LoadLight, AsksForALightOnlyWhereOneIsNeeded) {
   const test::TemporaryFolder folder;
-  std::ofstream(folder.path() / "scene.xml") << "<scene>" << camera << shape << "</scene>";
+  std::ofstream(folder.path() / "scene.xml") << "<scene>" << camera << unlit_rectangle << "</scene>";
   const SceneDesc description = read_nori_xml(folder.path() / "scene.xml", Dialect::nori);
   const LoadedScene loaded = load_scene(description);
   EXPECT_THROW(check_has_light(description, loaded.scene), InputError);

@@ -24,7 +24,7 @@ LoadedScene load_with(const std::string& shapes) {
   return load_scene(read_nori_xml(folder.path() / "scene.xml"));
 }
 
-std::string shape(const std::string& inside) { return "<shape type='rectangle'>" + inside + "</shape>"; }
+std::string shape_with(const std::string& inside) { return "<shape type='rectangle'>" + inside + "</shape>"; }
 std::string grey(double albedo) {
   return fmt::format("<bsdf type='diffuse'><color name='albedo' value='{}'/></bsdf>", albedo);
 }
@@ -41,24 +41,24 @@ std::vector<std::int32_t> materials_of(const std::string& shapes) {
 
 TEST(Materials, AreSharedWhereTheirDescriptionsAreAlike) {
   const auto materials = materials_of(
-      shape("") + shape(grey(0.3)) +
+      shape_with("") + shape_with(grey(0.3)) +
       "<mesh type='obj'><string name='filename' value='triangle.obj'/></mesh>" + "<shape type='sphere'>" +
-      grey(0.3) + "</shape>" + shape(grey(0.4)) + shape("<bsdf type='mirror'/>") + shape(grey(0.3)) +
-      shape("<bsdf type='mirror'/>") + shape(checkers("albedo", 0.1)) + shape(checkers("albedo", 0.2)) +
-      shape(checkers("albedo", 0.1)));
+      grey(0.3) + "</shape>" + shape_with(grey(0.4)) + shape_with("<bsdf type='mirror'/>") +
+      shape_with(grey(0.3)) + shape_with("<bsdf type='mirror'/>") + shape_with(checkers("albedo", 0.1)) +
+      shape_with(checkers("albedo", 0.2)) + shape_with(checkers("albedo", 0.1)));
   EXPECT_EQ(materials, (std::vector<std::int32_t>{0, 1, 0, 1, 2, 3, 1, 3, 4, 5, 4}));
 }
 
 TEST(Materials, ManyShapesHaveAsManyAsDiffer) {
   std::string shapes;
-  for (int i = 0; i < 300; ++i) shapes += shape(i % 3 == 0 ? "" : grey(0.25 * (i % 3)));
+  for (int i = 0; i < 300; ++i) shapes += shape_with(i % 3 == 0 ? "" : grey(0.25 * (i % 3)));
   const LoadedScene loaded = load_with(shapes);
   EXPECT_EQ(loaded.scene.geometry.count(), 300);
   EXPECT_EQ(loaded.scene.materials.count(), 3);
 }
 
 TEST(Materials, WithUnknownKeysAreEachWarnedOf) {
-  const std::string odd = shape("<bsdf type='mirror'><float name='shine' value='1'/></bsdf>");
+  const std::string odd = shape_with("<bsdf type='mirror'><float name='shine' value='1'/></bsdf>");
   const LoadedScene loaded = load_with(odd + odd);
   EXPECT_EQ(loaded.warnings.size(), 2u);
 }

@@ -22,7 +22,7 @@ MeshFile read_nothing(const std::filesystem::path& file) {
   };
 }
 
-Object shape(const std::string& type, const std::string& file) {
+Object shape_of_file(const std::string& type, const std::string& file) {
   Object object;
   object.type = type;
   object.properties.push_back({"filename", "string", file, {}, {}});
@@ -31,8 +31,8 @@ Object shape(const std::string& type, const std::string& file) {
 
 TEST(MeshFiles, EachFileIsReadOnceForAllItsShapes) {
   Object root;
-  root.children = {shape("obj", "a"), shape("obj", "b"), shape("obj", "a"), shape("ply", "a"),
-                   shape("obj", "a")};
+  root.children = {shape_of_file("obj", "a"), shape_of_file("obj", "b"), shape_of_file("obj", "a"),
+                   shape_of_file("ply", "a"), shape_of_file("obj", "a")};
   MeshFiles files(root);
   files_read = 0;
   float x = 0;

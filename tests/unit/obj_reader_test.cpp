@@ -32,7 +32,7 @@ Mesh read_text(const std::string& text, const Transform& world_from_object = {})
   return read_obj(write_obj(text), world_from_object);
 }
 
-std::string error_of(const std::string& text, const Transform& world_from_object = {}) {
+std::string error_of_obj(const std::string& text, const Transform& world_from_object = {}) {
   return test::error_of([&] { read_text(text, world_from_object); });
 }
 
@@ -281,91 +281,92 @@ TEST(ObjReaderError, file) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("no/such/mesh.obj: there is no such file"));
   }
-  EXPECT_THAT(error_of(""), AllOf(HasSubstr("file.obj"), HasSubstr("the file is empty")));
-  EXPECT_THAT(error_of("\n"), HasSubstr("no face"));
-  EXPECT_THAT(error_of(square), HasSubstr("no face"));
-  EXPECT_THAT(error_of("l 1 2\np 1\n"), HasSubstr("no face"));
+  EXPECT_THAT(error_of_obj(""), AllOf(HasSubstr("file.obj"), HasSubstr("the file is empty")));
+  EXPECT_THAT(error_of_obj("\n"), HasSubstr("no face"));
+  EXPECT_THAT(error_of_obj(square), HasSubstr("no face"));
+  EXPECT_THAT(error_of_obj("l 1 2\np 1\n"), HasSubstr("no face"));
 }
 
 TEST(ObjReaderError, numbers) {
   const auto at = [](const char* place) { return HasSubstr(std::string("numbers.obj:") + place); };
-  EXPECT_THAT(error_of("v 0 0 0\nv 1 abc 0\n"),
+  EXPECT_THAT(error_of_obj("v 0 0 0\nv 1 abc 0\n"),
               AllOf(at("2:5: "), HasSubstr("vertex 2: 'abc' is not a number")));
-  EXPECT_THAT(error_of("v 0 nan 0\n"),
+  EXPECT_THAT(error_of_obj("v 0 nan 0\n"),
               AllOf(at("1:5: "), HasSubstr("vertex 1: 'nan' is not a finite number")));
-  EXPECT_THAT(error_of("v 0 0 -inf\n"), AllOf(at("1:7: "), HasSubstr("'-inf' is not a finite number")));
-  EXPECT_THAT(error_of("v 0 0 1e999\n"), AllOf(at("1:7: "), HasSubstr("vertex 1: '1e999' is out of range")));
-  EXPECT_THAT(error_of("v 0 0 1e39\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+  EXPECT_THAT(error_of_obj("v 0 0 -inf\n"), AllOf(at("1:7: "), HasSubstr("'-inf' is not a finite number")));
+  EXPECT_THAT(error_of_obj("v 0 0 1e999\n"),
+              AllOf(at("1:7: "), HasSubstr("vertex 1: '1e999' is out of range")));
+  EXPECT_THAT(error_of_obj("v 0 0 1e39\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
               AllOf(at("1:3: "), HasSubstr("vertex 1: 1e+39 does not fit a float")));
-  EXPECT_THAT(error_of("v 0 0 1e38\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", scaling({1, 1, 100})),
+  EXPECT_THAT(error_of_obj("v 0 0 1e38\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", scaling({1, 1, 100})),
               HasSubstr("does not fit a float"));
   for (const char* wrong : {"1.#IND", "1,5", "0x10", "1e", "--1", "+-1", "+", ".", "1.5f", "3.1+e2", "1/2"})
-    EXPECT_THAT(error_of(std::string("v 0 0 ") + wrong), AllOf(at("1:7: "), HasSubstr("is not a number")))
+    EXPECT_THAT(error_of_obj(std::string("v 0 0 ") + wrong), AllOf(at("1:7: "), HasSubstr("is not a number")))
         << wrong;
-  EXPECT_THAT(error_of("v 0 0\nv 1 1 1\n"), AllOf(at("1:6: "), HasSubstr("vertex 1 has 2 numbers")));
-  EXPECT_THAT(error_of("v\n"), HasSubstr("vertex 1 has 0 numbers"));
-  EXPECT_THAT(error_of("vt\n"), HasSubstr("texture vertex 1 has 0 numbers"));
-  EXPECT_THAT(error_of("vt 0 1e300\n"), HasSubstr("texture vertex 1: 1e+300 does not fit a float"));
-  EXPECT_THAT(error_of("vn 0 1\n"), HasSubstr("normal 1 has 2 numbers"));
-  EXPECT_THAT(error_of("vn 0 1 x\n"), HasSubstr("normal 1: 'x' is not a number"));
-  EXPECT_THAT(error_of("v 1 2 3 v 4 5 6\n"), HasSubstr("'v' is not a number"));
-  EXPECT_THAT(error_of("v 0 \\\n0 x\n"), at("2:3: "));
+  EXPECT_THAT(error_of_obj("v 0 0\nv 1 1 1\n"), AllOf(at("1:6: "), HasSubstr("vertex 1 has 2 numbers")));
+  EXPECT_THAT(error_of_obj("v\n"), HasSubstr("vertex 1 has 0 numbers"));
+  EXPECT_THAT(error_of_obj("vt\n"), HasSubstr("texture vertex 1 has 0 numbers"));
+  EXPECT_THAT(error_of_obj("vt 0 1e300\n"), HasSubstr("texture vertex 1: 1e+300 does not fit a float"));
+  EXPECT_THAT(error_of_obj("vn 0 1\n"), HasSubstr("normal 1 has 2 numbers"));
+  EXPECT_THAT(error_of_obj("vn 0 1 x\n"), HasSubstr("normal 1: 'x' is not a number"));
+  EXPECT_THAT(error_of_obj("v 1 2 3 v 4 5 6\n"), HasSubstr("'v' is not a number"));
+  EXPECT_THAT(error_of_obj("v 0 \\\n0 x\n"), at("2:3: "));
 }
 
 TEST(ObjReaderError, indices) {
   const std::string head = square + std::string("vt 0 0\nvn 0 0 1\n");
   const auto at = [](const char* place) { return HasSubstr(std::string("indices.obj:") + place); };
-  EXPECT_THAT(error_of(head + "f 1 2 5\n"),
+  EXPECT_THAT(error_of_obj(head + "f 1 2 5\n"),
               AllOf(at("7:7: "), HasSubstr("v 5 does not exist"), HasSubstr("the file has 4 v statements")));
   EXPECT_THAT(
-      error_of(head + "f 1 2 3\nf 1/1 2/2 3/1\n"),
+      error_of_obj(head + "f 1 2 3\nf 1/1 2/2 3/1\n"),
       AllOf(at("8:7: "), HasSubstr("vt 2 does not exist"), testing::EndsWith("the file has 1 vt statement")));
-  EXPECT_THAT(error_of(head + "f 1//1 \\\n 2//1 3//7\n"),
+  EXPECT_THAT(error_of_obj(head + "f 1//1 \\\n 2//1 3//7\n"),
               AllOf(at("8:7: "), HasSubstr("vn 7 does not exist")));
   EXPECT_THAT(
-      error_of(square + std::string("f 1//1 2//1 3//1\n")),
+      error_of_obj(square + std::string("f 1//1 2//1 3//1\n")),
       AllOf(at("5:3: "), HasSubstr("vn 1 does not exist"), HasSubstr("the file has 0 vn statements")));
-  EXPECT_THAT(error_of(head + "f 0 1 2\n"),
+  EXPECT_THAT(error_of_obj(head + "f 0 1 2\n"),
               AllOf(at("7:3: "), HasSubstr("index 0"), HasSubstr("count from 1")));
-  EXPECT_THAT(error_of(head + "f 1 2 -5\n"), AllOf(at("7:7: "), HasSubstr("'-5' is out of range")));
-  EXPECT_THAT(error_of("f -3 -2 -1\n" + head), HasSubstr("'-3' is out of range"));
-  EXPECT_THAT(error_of(head + "f 1 2 4294967295\n"), HasSubstr("out of range"));
-  EXPECT_THAT(error_of(head + "f 1 2 4294967294\n"), HasSubstr("v 4294967294 does not exist"));
-  EXPECT_THAT(error_of(head + "f 1 2 -9223372036854775808\n"), HasSubstr("out of range"));
-  EXPECT_THAT(error_of(head + "f 1 2 99999999999999999999999\n"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of_obj(head + "f 1 2 -5\n"), AllOf(at("7:7: "), HasSubstr("'-5' is out of range")));
+  EXPECT_THAT(error_of_obj("f -3 -2 -1\n" + head), HasSubstr("'-3' is out of range"));
+  EXPECT_THAT(error_of_obj(head + "f 1 2 4294967295\n"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of_obj(head + "f 1 2 4294967294\n"), HasSubstr("v 4294967294 does not exist"));
+  EXPECT_THAT(error_of_obj(head + "f 1 2 -9223372036854775808\n"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of_obj(head + "f 1 2 99999999999999999999999\n"), HasSubstr("out of range"));
   for (const char* wrong : {"x", "1.5", "1/x", "1/1/x", "1/1/1/1", "/1", "//", "1/1x", "+1"})
-    EXPECT_THAT(error_of(head + "f 1 2 " + wrong), AllOf(at("7:7: "), HasSubstr("is not a face vertex")))
+    EXPECT_THAT(error_of_obj(head + "f 1 2 " + wrong), AllOf(at("7:7: "), HasSubstr("is not a face vertex")))
         << wrong;
 }
 
 TEST(ObjReaderError, faces) {
-  EXPECT_THAT(error_of(square + std::string("f 1 2\n")),
+  EXPECT_THAT(error_of_obj(square + std::string("f 1 2\n")),
               AllOf(HasSubstr("faces.obj:5:1: "), HasSubstr("a face of 2 vertices")));
-  EXPECT_THAT(error_of(square + std::string("f 1\n")), HasSubstr("a face of 1 vertex"));
-  EXPECT_THAT(error_of(square + std::string("f\n")), HasSubstr("a face of 0 vertices"));
-  EXPECT_THAT(error_of(square + std::string("f 1 1 2\n")),
+  EXPECT_THAT(error_of_obj(square + std::string("f 1\n")), HasSubstr("a face of 1 vertex"));
+  EXPECT_THAT(error_of_obj(square + std::string("f\n")), HasSubstr("a face of 0 vertices"));
+  EXPECT_THAT(error_of_obj(square + std::string("f 1 1 2\n")),
               HasSubstr("faces.obj:5:1: no triangle has an area"));
-  EXPECT_THAT(error_of(square + std::string("f 1 2 3\n"), scaling({1, 0, 1})),
+  EXPECT_THAT(error_of_obj(square + std::string("f 1 2 3\n"), scaling({1, 0, 1})),
               HasSubstr("no triangle has an area"));
-  EXPECT_THAT(error_of(square + std::string("f 1 2 3\n"), scaling({1e10, 1e10, 1})),
+  EXPECT_THAT(error_of_obj(square + std::string("f 1 2 3\n"), scaling({1e10, 1e10, 1})),
               HasSubstr("faces.obj:5:1: a triangle too large"));
 }
 
 TEST(ObjReaderError, normals_without_direction) {
   const std::string head = square + std::string("vn 0 0 1\nvn 0 0 0\n");
-  EXPECT_THAT(error_of(head + "f 1//1 2//2 3//1\n"),
+  EXPECT_THAT(error_of_obj(head + "f 1//1 2//2 3//1\n"),
               AllOf(HasSubstr("direction.obj:6:1: "), HasSubstr("normal 2 has no direction")));
-  EXPECT_THAT(error_of(head + "f 1//1 2//1 3//1\n", scaling({1, 1, 0})),
+  EXPECT_THAT(error_of_obj(head + "f 1//1 2//1 3//1\n", scaling({1, 1, 0})),
               HasSubstr("normal 1 has no direction"));
 }
 
 TEST(ObjReaderError, garbage) {
-  EXPECT_THAT(error_of(std::string("f \0\x01\xff 2 3\n", 10)), HasSubstr("'?\?\?' is not a face vertex"));
-  EXPECT_THAT(error_of("f " + std::string(100000, 'x')),
+  EXPECT_THAT(error_of_obj(std::string("f \0\x01\xff 2 3\n", 10)), HasSubstr("'?\?\?' is not a face vertex"));
+  EXPECT_THAT(error_of_obj("f " + std::string(100000, 'x')),
               AllOf(HasSubstr("xxx...' is not"), testing::SizeIs(testing::Lt(1000u))));
-  EXPECT_THAT(error_of(std::string("\x7f"
-                                   "ELF\0\0\0\\\\\r\n",
-                                   12)),
+  EXPECT_THAT(error_of_obj(std::string("\x7f"
+                                       "ELF\0\0\0\\\\\r\n",
+                                       12)),
               HasSubstr("no face"));
 }
 

@@ -14,7 +14,7 @@
 namespace etendue {
 namespace {
 
-struct Picture {
+struct NoisyPicture {
   Film film;
   ReplicateLuminances luminances;
   std::vector<PixelInterval> intervals(double confidence = 0.95) const {
@@ -24,8 +24,8 @@ struct Picture {
 
 using Law = std::function<double(int x, int y)>;
 
-Picture picture(int side_px, int replicates, const Law& draw) {
-  Picture picture{Film(side_px, side_px), ReplicateLuminances(side_px, side_px, replicates)};
+NoisyPicture noisy_picture(int side_px, int replicates, const Law& draw) {
+  NoisyPicture picture{Film(side_px, side_px), ReplicateLuminances(side_px, side_px, replicates)};
   std::vector<Color<double>> means(static_cast<std::size_t>(replicates));
   for (int y = 0; y < side_px; ++y)
     for (int x = 0; x < side_px; ++x) {
@@ -43,7 +43,7 @@ struct Shares {
   double covered = 0, trusted = 0, covered_where_trusted = 0;
 };
 
-Shares shares(const Picture& picture, double truth) {
+Shares shares(const NoisyPicture& picture, double truth) {
   const std::vector<PixelInterval> intervals = picture.intervals();
   double covered = 0, trusted = 0, both = 0;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
@@ -63,7 +63,7 @@ TEST(PixelIntervals, HoldTheirShareWhereReplicatesAreNormal) {
   for (const int replicates : {4, 8, 16, 32}) {
     std::mt19937_64 engine(1);
     std::normal_distribution<double> law(3, 0.5);
-    const Shares found = shares(picture(128, replicates, [&](int, int) { return law(engine); }), 3);
+    const Shares found = shares(noisy_picture(128, replicates, [&](int, int) { return law(engine); }), 3);
     EXPECT_GT(found.covered, 0.94) << replicates;
     EXPECT_LT(found.covered, replicates == 4 ? 0.992 : 0.985) << replicates;
     EXPECT_GT(found.trusted, 0.97) << replicates;
@@ -74,7 +74,7 @@ TEST(PixelIntervals, HoldWhereOneReplicateInEightFindsTheLight) {
   // Student's t over the same replicates holds the mean in 85 % of pixels.
   std::mt19937_64 engine(2);
   std::bernoulli_distribution hit(0.125);
-  const Picture found = picture(128, 16, [&](int, int) { return 1 + 100 * hit(engine); });
+  const NoisyPicture found = noisy_picture(128, 16, [&](int, int) { return 1 + 100 * hit(engine); });
   EXPECT_GT(shares(found, 13.5).covered, 0.93);
   EXPECT_GT(shares(found, 13.5).covered_where_trusted, 0.93);
 }
@@ -83,7 +83,7 @@ TEST(PixelIntervals, SayWhereLightIsMetTooSeldom) {
   // Six of ten pixels have met nothing.
   std::mt19937_64 engine(3);
   std::bernoulli_distribution hit(1.0 / 32);
-  const Picture found = picture(128, 16, [&](int, int) { return 1 + 100 * hit(engine); });
+  const NoisyPicture found = noisy_picture(128, 16, [&](int, int) { return 1 + 100 * hit(engine); });
   EXPECT_GT(shares(found, 1 + 100.0 / 32).covered, 0.9);
   for (const PixelInterval& interval : found.intervals()) ASSERT_NE(interval.rule, IntervalRule::unknown);
 }
@@ -91,8 +91,8 @@ TEST(PixelIntervals, SayWhereLightIsMetTooSeldom) {
 TEST(PixelIntervals, LeaveAQuietPixelAloneBesideAnEdge) {
   std::mt19937_64 engine(4);
   std::normal_distribution<double> law(0, 1);
-  const Picture found =
-      picture(32, 16, [&](int x, int) { return x < 16 ? 1 + 1e-3 * law(engine) : 5 + 0.5 * law(engine); });
+  const NoisyPicture found = noisy_picture(
+      32, 16, [&](int x, int) { return x < 16 ? 1 + 1e-3 * law(engine) : 5 + 0.5 * law(engine); });
   const std::vector<PixelInterval> intervals = found.intervals();
   for (int y = 0; y < 32; ++y) {
     EXPECT_LT(intervals[std::size_t(y * 32 + 15)].half_width.g, 1.5e-3);
@@ -102,7 +102,7 @@ TEST(PixelIntervals, LeaveAQuietPixelAloneBesideAnEdge) {
 
 TEST(PixelIntervals, BoundWhatBlackPixelsMayHide) {
   const auto black_but_for_a_corner = [](int replicates) {
-    return picture(16, replicates, [](int x, int y) { return x == 0 && y == 0 ? 7.0 : 0.0; });
+    return noisy_picture(16, replicates, [](int x, int y) { return x == 0 && y == 0 ? 7.0 : 0.0; });
   };
   const PixelInterval far = black_but_for_a_corner(8).intervals()[16 * 8 + 8];
   EXPECT_EQ(far.rule, IntervalRule::black);
@@ -117,15 +117,15 @@ TEST(PixelIntervals, BoundWhatBlackPixelsMayHide) {
 
 TEST(PixelIntervals, ABlackPixelAmongOnesThatMetLightHasTheirs) {
   int drawn = 0;
-  const Picture found =
-      picture(5, 8, [&](int x, int y) { return x == 2 && y == 2 ? 0.0 : double(drawn++ % 8 == 0); });
+  const NoisyPicture found =
+      noisy_picture(5, 8, [&](int x, int y) { return x == 2 && y == 2 ? 0.0 : double(drawn++ % 8 == 0); });
   const PixelInterval middle = found.intervals()[12];
   EXPECT_EQ(middle.rule, IntervalRule::neighbours);
   EXPECT_GT(middle.half_width.r, 0.1);
 }
 
 TEST(PixelIntervals, KnowNothingOfLessThanTwoReplicates) {
-  const Picture one = picture(2, 1, [](int, int) { return 1.0; });
+  const NoisyPicture one = noisy_picture(2, 1, [](int, int) { return 1.0; });
   EXPECT_EQ(one.intervals()[0].rule, IntervalRule::unknown);
   EXPECT_TRUE(std::isnan(one.intervals()[0].half_width.r));
   EXPECT_TRUE(std::isnan(one.intervals()[0].luminance_half_width));
@@ -148,7 +148,7 @@ TEST(PixelIntervals, TakeTheLuminanceOfReplicatesWhereItIsKept) {
 TEST(PixelIntervals, WidenWithTheConfidence) {
   std::mt19937_64 engine(5);
   std::normal_distribution<double> law(3, 0.5);
-  const Picture found = picture(3, 8, [&](int, int) { return law(engine); });
+  const NoisyPicture found = noisy_picture(3, 8, [&](int, int) { return law(engine); });
   EXPECT_GT(found.intervals(0.99)[4].half_width.g, found.intervals(0.9)[4].half_width.g);
   EXPECT_THROW(found.intervals(1), std::domain_error);
 }

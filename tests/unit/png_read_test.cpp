@@ -19,7 +19,7 @@ using testing::FloatEq;
 using testing::FloatNear;
 using testing::HasSubstr;
 
-double linear(double encoded) {
+double linear_from_png(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
@@ -75,18 +75,21 @@ std::pair<const char*, std::string> cicp(int primaries, int transfer, int matrix
 }
 
 const double half = 128 / 255.0, quarter = 64 / 255.0;
-const auto as_srgb = ElementsAre(1, FloatEq(float(linear(half))), FloatEq(float(linear(quarter))));
+const auto as_srgb =
+    ElementsAre(1, FloatEq(float(linear_from_png(half))), FloatEq(float(linear_from_png(quarter))));
 const auto as_linear = ElementsAre(1, FloatEq(float(half)), FloatEq(float(quarter)));
 
 TEST_F(PngRead, EveryKindOfPixelIsDecoded) {
   const auto first = [&](bool is_raw, std::size_t i) { return pixel(read({is_raw, ""}), i); };
   write_row(2, 8, PNG_COLOR_TYPE_RGB, {255, 188, 0, 1, 10, 11});
-  EXPECT_THAT(first(false, 0), ElementsAre(1, float(linear(188 / 255.0)), 0));
+  EXPECT_THAT(first(false, 0), ElementsAre(1, float(linear_from_png(188 / 255.0)), 0));
   EXPECT_THAT(first(false, 1),
-              ElementsAre(float(linear(1 / 255.0)), float(linear(10 / 255.0)), float(linear(11 / 255.0))));
+              ElementsAre(float(linear_from_png(1 / 255.0)), float(linear_from_png(10 / 255.0)),
+                          float(linear_from_png(11 / 255.0))));
   EXPECT_THAT(first(true, 0), ElementsAre(1, float(188 / 255.0), 0));
   write_row(1, 16, PNG_COLOR_TYPE_RGB_ALPHA, {0x12, 0x34, 0xff, 0xff, 0, 1, 0, 0});
-  EXPECT_THAT(first(false, 0), ElementsAre(float(linear(0x1234 / 65535.0)), 1, float(linear(1 / 65535.0))));
+  EXPECT_THAT(first(false, 0),
+              ElementsAre(float(linear_from_png(0x1234 / 65535.0)), 1, float(linear_from_png(1 / 65535.0))));
   write_row(1, 16, PNG_COLOR_TYPE_GRAY, {0x12, 0x34});
   const float grey = float(0x1234 / 65535.0);
   EXPECT_THAT(first(true, 0), ElementsAre(grey, grey, grey));
@@ -94,7 +97,7 @@ TEST_F(PngRead, EveryKindOfPixelIsDecoded) {
   EXPECT_THAT(first(false, 0), ElementsAre(0, 0, 0));
   EXPECT_THAT(first(false, 1), ElementsAre(1, 1, 1));
   write_row(2, 8, PNG_COLOR_TYPE_PALETTE, {0, 1});
-  EXPECT_THAT(first(false, 1), ElementsAre(0, float(linear(188 / 255.0)), 0));
+  EXPECT_THAT(first(false, 1), ElementsAre(0, float(linear_from_png(188 / 255.0)), 0));
 }
 
 TEST_F(PngRead, GammaCountsUnlessAnSrgbChunkIsThere) {

@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using Flat = std::vector<Vec2<double>>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-double turn(const Vec2<double>& a, const Vec2<double>& b, const Vec2<double>& c) {
+double twice_area_left(const Vec2<double>& a, const Vec2<double>& b, const Vec2<double>& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -43,14 +43,15 @@ std::vector<Vec3<double>> in_space(const Flat& polygon, Plane plane) {
 /// The triangles turn as the polygon (to the left), and cover it and nothing else.
 void expect_tiles(const Flat& polygon, const std::vector<Triangle>& triangles) {
   for (const Triangle& t : triangles)
-    EXPECT_GE(turn(polygon[t[0]], polygon[t[1]], polygon[t[2]]), -1e-9) << t[0] << t[1] << t[2];
+    EXPECT_GE(twice_area_left(polygon[t[0]], polygon[t[1]], polygon[t[2]]), -1e-9) << t[0] << t[1] << t[2];
   constexpr int side = 61;  // No point of the grid lies on an edge.
   for (int i = 0; i < side * side; ++i) {
     const Vec2<double> p{-3.01 + 6.03 * (i % side) / side, -3.02 + 6.05 * (i / side) / side};
     int covers = 0;
     for (const Triangle& t : triangles)
-      covers += turn(polygon[t[0]], polygon[t[1]], p) > 0 && turn(polygon[t[1]], polygon[t[2]], p) > 0 &&
-                turn(polygon[t[2]], polygon[t[0]], p) > 0;
+      covers += twice_area_left(polygon[t[0]], polygon[t[1]], p) > 0 &&
+                twice_area_left(polygon[t[1]], polygon[t[2]], p) > 0 &&
+                twice_area_left(polygon[t[2]], polygon[t[0]], p) > 0;
     ASSERT_EQ(covers, is_inside(polygon, p) ? 1 : 0) << p.x << ' ' << p.y;
   }
 }

@@ -17,8 +17,6 @@ namespace {
 using Vec3d = Vec3<double>;
 constexpr double none = 1e9;
 
-Vec3d wide(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
 /// Moeller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection".
 double meet_triangle(const Vec3d& origin, const Vec3d& direction, const Vec3d corners[3]) {
   const Vec3d edge_1 = corners[1] - corners[0], edge_2 = corners[2] - corners[0];
@@ -30,7 +28,7 @@ double meet_triangle(const Vec3d& origin, const Vec3d& direction, const Vec3d co
 }
 
 double meet_sphere(const Vec3d& origin, const Vec3d& direction, const Sphere& sphere) {
-  const Vec3d offset = origin - wide(sphere.center);
+  const Vec3d offset = origin - widen(sphere.center);
   const double a = length_sq(direction), b = dot(offset, direction),
                c = length_sq(offset) - double(sphere.radius) * sphere.radius, root_sq = b * b - a * c;
   if (root_sq < 0) return none;
@@ -40,9 +38,9 @@ double meet_sphere(const Vec3d& origin, const Vec3d& direction, const Sphere& sp
 
 /// A round one.
 double meet_disk(const Vec3d& origin, const Vec3d& direction, const Disk& disk) {
-  const Vec3d to_center = wide(disk.center) - origin, ng = wide(disk.ng);
+  const Vec3d to_center = widen(disk.center) - origin, ng = widen(disk.ng);
   const double t = dot(to_center, ng) / dot(direction, ng);
-  return t > 0 && length(direction * t - to_center) <= length(wide(disk.along_x)) ? t : none;
+  return t > 0 && length(direction * t - to_center) <= length(widen(disk.along_x)) ? t : none;
 }
 
 struct Nearest {
@@ -64,7 +62,7 @@ Nearest search(const Geometry& geometry, const Vec3d& origin, const Vec3d& direc
     for (std::int32_t k = 0; k < geometry.triangles[at]; ++k) {
       Vec3d corners[3];
       for (std::size_t c = 0; c < 3; ++c)
-        corners[c] = wide(geometry.positions[std::size_t(
+        corners[c] = widen(geometry.positions[std::size_t(
             geometry.indices[3 * std::size_t(geometry.first_triangle[at] + k) + c])]);
       nearest.take(meet_triangle(origin, direction, corners), id, k);
     }
@@ -111,7 +109,7 @@ Geometry mixed_geometry(const Counts& counts) {
       geometry.add_sphere({center, float(size)}, {0});
     } else {
       geometry.add_disk(make_disk(translation({center.x, center.y, center.z}) *
-                                  rotation(Vec3d{1, 0, 0} + wide(vec(edge)), 90.0 * double(edge(engine))) *
+                                  rotation(Vec3d{1, 0, 0} + widen(vec(edge)), 90.0 * double(edge(engine))) *
                                   scaling({size, size, size})),
                         {0});
     }
@@ -140,7 +138,7 @@ TEST_P(MixedShapes, AreMetAsBruteForceFindsThem) {
       return Vec3f{x, y, z};
     };
     const Vec3f from = point(), along = point() - from;
-    const Nearest nearest = search(geometry, wide(from), wide(along));
+    const Nearest nearest = search(geometry, widen(from), widen(along));
     if (nearest.t < none && nearest.second_t - nearest.t < 1e-4) continue;  // Floats might swap them.
     if (std::abs(nearest.t - 1) < 1e-4) continue;
     origin.push_back(from);
