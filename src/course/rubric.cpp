@@ -42,7 +42,8 @@ Rubric read_rubric(const std::filesystem::path& file) {
     for (const nlohmann::json& one : nlohmann::json::parse(in)) {
       RubricPart part{one.at("title").get<std::string>(), one.at("points").get<double>(), {}, false};
       part.is_written = one.value("written", false);
-      for (const auto& [property, points] : one.value("lose", nlohmann::json::object()).items())
+      const nlohmann::json losses = one.value("lose", nlohmann::json::object());
+      for (const auto& [property, points] : losses.items())
         part.losses.push_back({property, points.get<double>()});
       rubric.push_back(std::move(part));
     }
