@@ -119,7 +119,8 @@ class DiskLights {
               select(is_facing, -dot(ng, to_center) * inv_long, F(1)), short_sq * (inv_long * inv_long)};
       const Mask<F> none = F(1) < F(0);
       is_by_area = technique == LightTechnique::automatic || technique == LightTechnique::transformed_cosine
-                       ? is_small_from(length_sq(to_center), F(1) / lights.pdf_area_.at(row))
+                       ? is_small_from(length_sq(to_center),
+                                       spread_of(F(1) / lights.pdf_area_.at(row), F(4) * long_sq))
                        : none;
     }
   };

@@ -76,7 +76,7 @@ class GlossyPolygonLight {
   Mask<F> may_be_uneven() const {
     constexpr float far_sq = 64;
     return length_sq(polygon_.fan().apex) * receiver_.lobes->template narrowest<F>(receiver_.material) <
-           F(far_sq) * polygon_.fan().area;
+           F(far_sq) * polygon_.fan().spread;
   }
 
   /// Of the samples: what the lobe reflects of the polygon's light over what is scattered of it at all, with

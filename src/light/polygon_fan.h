@@ -21,7 +21,7 @@ struct PolygonFan {
   /// Of the receiver above the polygon's plane (m), > 0 where a side that shines faces it; 0 where rounding
   /// cannot tell.
   F height;
-  F area;                 ///< m^2
+  F area, spread;         ///< m^2; spread_of, by the diagonals from the first corner.
   Mask<F> is_turned;      ///< The receiver is behind a polygon that shines from there too.
   Int<F> corners, label;  ///< The label is the table's user's.
   int most;               ///< The greatest of `corners` among the lanes that ask.

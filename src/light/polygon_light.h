@@ -27,7 +27,7 @@ class PolygonLight {
     if (technique == LightTechnique::solid_angle || technique == LightTechnique::projected_solid_angle)
       by_area_ = none;
     if (technique == LightTechnique::automatic || technique == LightTechnique::transformed_cosine)
-      by_area_ = mask_and(lanes, is_small_from(length_sq(fan_.apex), fan_.area));
+      by_area_ = mask_and(lanes, is_small_from(length_sq(fan_.apex), fan_.spread));
     if (technique == LightTechnique::projected_solid_angle)
       by_cosine_ = mask_and(is_seen_, mask_not(by_area_), is_lit_from_one_side(receiver));
   }

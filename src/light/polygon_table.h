@@ -5,9 +5,11 @@
 #include "geometry/box.h"
 #include "geometry/clearance.h"
 #include "light/polygon_fan.h"
+#include "light/technique.h"
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace etendue {
@@ -17,27 +19,7 @@ class PolygonTable {
  public:
   /// \param corners 3 to most_corners, convex, in one plane, with an area; seen from the front they turn to
   /// the left \return the row
-  std::int32_t add(std::span<const Vec3f> corners) {
-    const Vec3<double> apex = widen(corners.front());
-    const auto before = std::int32_t(further_.size());
-    Record record;
-    Vec3<double> sum{0, 0, 0}, last{0, 0, 0};
-    for (std::size_t k = 1; k < corners.size(); ++k) {
-      const Vec3<double> side = widen(corners[k]) - apex, across = cross(last, side);
-      const Side here{narrow(side), float(length(across))};
-      if (k == 1) record.first_side = here.from_apex;
-      if (k == 2) record.second_side = here.from_apex, record.twice_first_area = here.twice_area;
-      if (k > 2) further_.push_back(here);
-      sum = sum + across;
-      last = side;
-    }
-    record.apex = corners.front();
-    record.area = float(0.5 * length(sum));
-    record.ng = narrow(normalize(sum));
-    record.further_and_corners = before << 4 | std::int32_t(corners.size());
-    records_.push_back(record);
-    return count() - 1;
-  }
+  std::int32_t add(std::span<const Vec3f> corners);
   void set_label(std::int32_t row, std::int32_t label) { records_[std::size_t(row)].label = label; }
 
   /// \param position of the receiver (world, m) \param lanes that ask; the others may hold any row
@@ -83,6 +65,13 @@ class PolygonTable {
       fan.from_apex[n] = select(is_corner, place(side), fan.from_apex[1]);
       fan.twice_area[n] = select(is_corner, side[3], F(0));
     }
+    fan.spread = fan.area;
+    if (has_long_) {
+      F longest_sq(0);
+      for (int k = 1; k < fan.most; ++k)
+        longest_sq = max(longest_sq, length_sq(fan.from_apex[std::size_t(k)]));
+      fan.spread = spread_of(fan.area, longest_sq);
+    }
     const F height = -dot(fan.ng, fan.apex);
     const F rounding = F(0.25f) * clearance<F>(fan.ng, abs_each(origin) + abs_each(position), F(0));
     fan.is_turned = mask_and(is_twosided, height < F(0));
@@ -105,10 +94,18 @@ class PolygonTable {
       box.include(record.apex + further[k - 3].from_apex);
     return box;
   }
-  /// The first corner (m) and the area (m^2).
+  /// The first corner (m) and the spread (m^2) of triangles and parallelograms, as in PolygonFan.
   template <class F>
-  std::array<F, 4> apex_and_area(const Int<F>& row) const {
-    return gather_four(&records_.data()->apex.x, row * Int<F>(record_words));
+  std::pair<Vec3<F>, F> apex_and_spread(const Int<F>& row) const {
+    const Int<F> at = row * Int<F>(record_words);
+    const std::array<F, 4> first = gather_four(&records_.data()->apex.x, at);
+    const Vec3<F> apex{first[0], first[1], first[2]};
+    if (!has_long_) return {apex, first[3]};
+    const std::array<F, 4> second = gather_four(&records_.data()->first_side.x, at),
+                           third = gather_four(&records_.data()->second_side.x, at);
+    const Vec3<F> to_second{second[0], second[1], second[2]}, to_third{third[0], third[1], third[2]};
+    const F longest_sq = max(max(length_sq(to_second), length_sq(to_third)), length_sq(to_third - to_second));
+    return {apex, spread_of(first[3], longest_sq)};
   }
   template <class F>
   F area_at(const Int<F>& row) const {
@@ -138,6 +135,7 @@ class PolygonTable {
 
   std::vector<Record> records_;
   std::vector<Side> further_;  ///< From the fourth corner on.
+  bool has_long_ = false;      ///< Some polygon is_long; spares the others the question.
 };
 
 }  // namespace etendue

@@ -1,6 +1,8 @@
 // How a light sample finds its place on the light that has been chosen.
 #pragma once
 
+#include "base/simd_math.h"
+
 #include <string_view>
 
 namespace etendue {
@@ -17,11 +19,22 @@ namespace etendue {
 ///     lobe (LobePolygon), else as automatic, which does that where the lobe varies over the polygon.
 enum class LightTechnique { area, solid_angle, projected_solid_angle, automatic, transformed_cosine };
 
-/// Whether it hardly matters where on a light of this area (m^2): from four sides of a square as large on.
+/// Whether a light is so much longer than wide that its area (m^2) tells nothing of its size: a square of the
+/// same diagonal has four times as much. \param longest_sq the square of the longest diagonal (m^2)
 template <class F>
-auto is_small_from(const F& distance_sq, const F& area) {
+auto is_long(const F& area, const F& longest_sq) {
+  return F(0.5f) * longest_sq > F(4) * area;
+}
+/// The area (m^2) of a light, of long ones that of a square of the same diagonal.
+template <class F>
+F spread_of(const F& area, const F& longest_sq) {
+  return select(is_long(area, longest_sq), F(0.5f) * longest_sq, area);
+}
+/// Whether it hardly matters where on a light of this spread (m^2): from four sides of a square as large on.
+template <class F>
+auto is_small_from(const F& distance_sq, const F& spread) {
   constexpr float sides = 4;
-  return distance_sq > F(sides * sides) * area;
+  return distance_sq > F(sides * sides) * spread;
 }
 
 /// area, solid_angle, projected, auto or ltc.

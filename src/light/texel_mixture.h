@@ -19,10 +19,8 @@ class TexelMixture {
   TexelMixture(const TexelTable& texels, const PolygonTable& polygons, const Int<F>& facet,
                const Receiver<F>& receiver, const Mask<F>& is_twosided, const Mask<F>& lanes)
       : texels_(texels), facet_(facet), receiver_(receiver) {
-    const std::array<F, 4> apex_and_area = polygons.apex_and_area<F>(facet);
-    const Vec3<F> apex{apex_and_area[0], apex_and_area[1], apex_and_area[2]};
-    is_near_ =
-        mask_and(lanes, mask_not(is_small_from(length_sq(apex - receiver.position), apex_and_area[3])));
+    const auto [apex, spread] = polygons.apex_and_spread<F>(facet);
+    is_near_ = mask_and(lanes, mask_not(is_small_from(length_sq(apex - receiver.position), spread)));
     if (!any(is_near_)) return;
     constexpr float least = 0.1f;
     share_ = min(max(texels.template flatness<F>(facet), F(least)), F(1 - least));
