@@ -123,7 +123,8 @@ template <class F>
       const MetLight<F> met =
           met_light<F>(rules, path, i, vertex, is_outside, [&](const Receiver<F>& receiver) {
             return light_sampler.pmf<F>(receiver, light, Int<F>(0)) *
-                   scene.lights.infinite_pdf_solid_angle<F>(k, direction, is_outside);
+                   scene.lights.infinite_pdf_solid_angle<F>(k, receiver, direction, is_outside,
+                                                            rules.light_samples()->technique);
           });
       add_contribution<F>(
           block, i, is_outside,

@@ -56,7 +56,8 @@ class EnvmapLights {
   }
   /// The density (1/sr) with which `sample` gives `direction`.
   template <class F>
-  F pdf_solid_angle(std::int32_t row, const Vec3<F>& direction, const Mask<F>& m) const {
+  F pdf_solid_angle(std::int32_t row, const Receiver<F>& /*receiver*/, const Vec3<F>& direction,
+                    LightTechnique /*technique*/, const Mask<F>& m) const {
     return value<F>(row, direction, m).pdf_solid_angle;
   }
 

@@ -87,10 +87,11 @@ class Lights : public LightProperties {
 
   /// The density (1/sr) with which `sample`, asked with pmf 1, gives `direction` for the infinite light k.
   template <class F>
-  F infinite_pdf_solid_angle(std::int32_t k, const Vec3<F>& direction, const Mask<F>& m) const {
+  F infinite_pdf_solid_angle(std::int32_t k, const Receiver<F>& receiver, const Vec3<F>& direction,
+                             const Mask<F>& m, LightTechnique technique = LightTechnique::area) const {
     F pdf(0);
     with_infinite_table(infinite_light(k), [&](const auto& table, std::int32_t row) {
-      pdf = table.template pdf_solid_angle<F>(row, direction, m);
+      pdf = table.template pdf_solid_angle<F>(row, receiver, direction, technique, m);
     });
     return pdf;
   }

@@ -58,18 +58,18 @@ concept FacetLightTable = SurfaceLightTable<Table> && requires(const Table& tabl
 };
 
 /// radiance(row, direction, lanes): what a ray that leaves the scene meets, per unit of strength.
-/// pdf_solid_angle(row, direction, lanes): the density (1/sr) with which `sample`, asked with pmf 1, gives
-/// this direction.
+/// pdf_solid_angle(row, receiver, direction, technique, lanes): the density (1/sr) with which `sample`, asked
+/// with pmf 1, gives this direction.
 template <class Table>
-concept InfiniteLightTable = AnyLightTable<Table> && Table::place == LightPlace::infinity &&
-                             requires(const Table& table, const Vec3<float>& direction, std::int32_t row) {
-                               {
-                                 table.template radiance<float>(row, direction, true)
-                               } -> std::same_as<Color<float>>;
-                               {
-                                 table.template pdf_solid_angle<float>(row, direction, true)
-                               } -> std::same_as<float>;
-                             };
+concept InfiniteLightTable =
+    AnyLightTable<Table> && Table::place == LightPlace::infinity &&
+    requires(const Table& table, const Receiver<float>& receiver, const Vec3<float>& direction,
+             std::int32_t row) {
+      { table.template radiance<float>(row, direction, true) } -> std::same_as<Color<float>>;
+      {
+        table.template pdf_solid_angle<float>(row, receiver, direction, LightTechnique::area, true)
+      } -> std::same_as<float>;
+    };
 
 template <class Table>
 concept LightTable = SurfaceLightTable<Table> || InfiniteLightTable<Table> ||

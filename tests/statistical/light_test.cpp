@@ -9,7 +9,8 @@
 // is by the mean of its edges' cosines, or it shines backwards; a direction is reversed or not turned; of a
 // map, the seam is left out, phi runs the other way, the rotation is transposed, sin(theta) is left out of
 // weights or density, the caps are even in theta, places in a cell are uniform, the search for a cell is
-// off, or the share beside a sun is missing; the choice's pmf is missing; a segment ends within the scene.
+// off, or the share beside a sun is missing; the choice's pmf is missing; a segment ends within the scene;
+// the density of a light from everywhere lacks the cosine, or goes by the front where the back is lit.
 #include "light/light.h"
 
 #include "geometry/bounds.h"
@@ -267,16 +268,20 @@ TEST(SphereLight, GivesNoSampleInside) {
 }
 
 /// The light alone among many, as an environment: its directions against its density.
-LightSample<float> sample_of(const Alone& alone, const Vec2<std::uint32_t>& u) {
-  return alone.lights.sample<float>(0, 1, receiver_at({0.5f, -1, 2}), u, true);
+LightSample<float> sample_of(const Alone& alone, const Vec2<std::uint32_t>& u,
+                             const Receiver<float>& receiver = receiver_at({0.5f, -1, 2}),
+                             LightTechnique technique = LightTechnique::area) {
+  return alone.lights.sample<float>(0, 1, receiver, u, true, whole_light, technique);
 }
 
 void expect_directions_follow_density(const Alone& alone, const std::string& what, int steps,
-                                      double tolerance_of_total, int sample_count = samples) {
+                                      double tolerance_of_total, int sample_count = samples,
+                                      const Receiver<float>& receiver = receiver_at({0.5f, -1, 2}),
+                                      LightTechnique technique = LightTechnique::area) {
   const auto cells = even_cells();
   const auto pdf = [&](const Vec3d& d) {
-    return double(
-        alone.lights.infinite_pdf_solid_angle<float>(0, {float(d.x), float(d.y), float(d.z)}, true));
+    return double(alone.lights.infinite_pdf_solid_angle<float>(
+        0, receiver, {float(d.x), float(d.y), float(d.z)}, true, technique));
   };
   std::vector<double> expected = cells.integrals(pdf, steps);
   double total = 0;
@@ -289,7 +294,7 @@ void expect_directions_follow_density(const Alone& alone, const std::string& wha
   RandomBits random(11);
   int odd_densities = 0, odd_radiances = 0;
   for (int i = 0; i < sample_count; ++i) {
-    const LightSample<float> sample = sample_of(alone, random.square());
+    const LightSample<float> sample = sample_of(alone, random.square(), receiver, technique);
     ASSERT_TRUE(sample.is_there) << what;
     ASSERT_NEAR(length(wide(sample.wi)), 1, 1e-5) << what;
     ASSERT_TRUE(sample.piece >= 0 && sample.piece < light_pieces) << sample.piece;
@@ -320,6 +325,25 @@ TEST(DistantDisk, DirectionsFollowTheDensity) {
     expect_directions_follow_density(alone, "disk of " + std::to_string(half_angle_deg) + " degrees", 60,
                                      1e-3);
   }
+}
+
+TEST(DistantDisk, OfAllDirectionsFollowsTheCosineWhereOneSideIsLit) {
+  Alone alone;
+  add_disk(alone, {{0, 0, 1}, std::numbers::pi_v<float>, {1, 2, 3}});
+  Receiver<float> receiver = receiver_at({0.5f, -1, 2});
+  receiver.ng = receiver.ns = normalize(Vec3f{1, -2, 2});
+  constexpr LightTechnique best = LightTechnique::automatic;
+  for (const std::int32_t side : {lit_side::front, lit_side::back}) {
+    receiver.lit_sides = side;
+    const LightSample<float> sample = sample_of(alone, {1u << 30, 3u << 29}, receiver, best);
+    const float cosine = dot(receiver.ns, sample.wi) * (side == lit_side::front ? 1.0f : -1.0f);
+    EXPECT_NEAR(sample.pdf_solid_angle * std::numbers::pi, cosine, 1e-6);
+    expect_directions_follow_density(alone, "side " + std::to_string(side), 60, 1e-3, samples, receiver,
+                                     best);
+  }
+  receiver.lit_sides = lit_side::front | lit_side::back;
+  expect_directions_follow_density(alone, "both sides", 20, 1e-3, samples, receiver, best);
+  EXPECT_NEAR(sample_of(alone, {1, 2}, receiver, best).pdf_solid_angle * 4 * std::numbers::pi, 1, 1e-6);
 }
 
 TEST(DistantDisk, TheSunIsRoundAndOfItsSize) {
@@ -458,7 +482,8 @@ TEST(Envmap, HasAValueAtThePolesAndNoneForNoDirection) {
   for (const float y : {1.0f, -1.0f})
     for (const float zero : {0.0f, -0.0f}) {
       EXPECT_GT((alone.lights.infinite_radiance<float>(0, {zero, y, zero}, true).g), 0);
-      const float pdf = alone.lights.infinite_pdf_solid_angle<float>(0, {zero, y, zero}, true);
+      const float pdf =
+          alone.lights.infinite_pdf_solid_angle<float>(0, receiver_at({0, 0, 0}), {zero, y, zero}, true);
       EXPECT_TRUE(pdf > 0 && std::isfinite(pdf)) << pdf;
     }
   EXPECT_TRUE(std::isnan(alone.lights.infinite_radiance<float>(0, {NAN, 0, 1}, true).g));
@@ -682,9 +707,10 @@ TEST(LightSample, HasTheProbabilityOfItsLightInIt) {
     EXPECT_EQ(sample.light, light);
     EXPECT_NEAR(sample.pdf_solid_angle * 4 * std::numbers::pi, 1, 1e-6) << "here that is 1";
     EXPECT_NEAR(sample.radiance_over_pdf.g / (4 * std::numbers::pi), light == 0 ? 2 : 5, 1e-5);
-    EXPECT_NEAR(
-        (loaded.scene.lights.infinite_pdf_solid_angle<float>(light, sample.wi, true)) * 4 * std::numbers::pi,
-        1, 1e-6);
+    EXPECT_NEAR((loaded.scene.lights.infinite_pdf_solid_angle<float>(light, receiver_at({0, 0, 0}), sample.wi,
+                                                                     true)) *
+                    4 * std::numbers::pi,
+                1, 1e-6);
   }
 }
 

@@ -293,11 +293,14 @@ void light_importance(const Scene&, Packet& p) {
 
 void environment(const Scene& scene, Packet& p) {
   const Vec3<F> direction = p.vec();
+  const Vec3<F> normal{F(0), F(0), F(1)};
+  const Receiver<F> receiver{{F(0), F(0), F(0)}, normal, normal, I(lit_side::front)};
   Color<F> radiance{F(0), F(0), F(0)};
   F pdf(0);
   for (std::int32_t k = 0; k < scene.lights.infinite_count(); ++k) {
     radiance = radiance + scene.lights.infinite_radiance<F>(k, direction, every_lane());
-    pdf = pdf + scene.lights.infinite_pdf_solid_angle<F>(k, direction, every_lane());
+    for (const LightTechnique technique : {LightTechnique::area, LightTechnique::automatic})
+      pdf = pdf + scene.lights.infinite_pdf_solid_angle<F>(k, receiver, direction, every_lane(), technique);
   }
   p.give(radiance), p.give(pdf);
 }
