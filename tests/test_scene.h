@@ -113,12 +113,8 @@ inline RenderSettings render_settings(std::string_view integrator, int samples_p
                                       std::uint64_t seed, Heuristic heuristic = Heuristic::balance) {
   RenderSettings settings;
   settings.integrator = integrator_from_name(integrator);
-  if (const PathRules* rules = settings.integrator.path_rules(); rules && rules->needs_both_pdfs()) {
-    auto by_both = std::get<ByBoth>(rules->direct_light());
-    by_both.heuristic = heuristic;
-    settings.integrator.rules =
-        rules->length() == PathLength::one_vertex ? PathRules::direct(by_both) : PathRules::paths(by_both);
-  }
+  if (const PathRules* rules = settings.integrator.path_rules(); rules && rules->needs_both_pdfs())
+    settings.integrator.rules = rules->with_heuristic(heuristic);
   settings.samples_per_pixel = samples_per_pixel;
   settings.replicates = replicates;
   settings.replicates_by = ReplicatesBy::scrambling;

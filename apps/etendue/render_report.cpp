@@ -169,6 +169,7 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   json["samples"] = result.counts.samples;
   json["samples_per_second"] = double(result.counts.samples) / result.seconds;
   json["camera_rays"] = result.counts.camera_rays;
+  json["outline_rays"] = result.counts.outline_rays;
   json["shadow_rays"] = result.counts.shadow_rays;
   json["bsdf_rays"] = result.counts.bsdf_rays;
   json["lane_occupancy"] = result.counts.lane_occupancy();

@@ -8,12 +8,13 @@
 namespace etendue {
 
 struct BlockCounts {
-  std::int64_t camera_rays = 0, shadow_rays = 0, bsdf_rays = 0;
+  std::int64_t camera_rays = 0, outline_rays = 0, shadow_rays = 0, bsdf_rays = 0;
   std::int64_t paths = 0;  ///< Living paths, summed over the vertices that they arrive at.
   std::int64_t lanes = 0;  ///< Lanes of the packets that they took.
 
   BlockCounts& operator+=(const BlockCounts& more) {
     camera_rays += more.camera_rays;
+    outline_rays += more.outline_rays;
     shadow_rays += more.shadow_rays;
     bsdf_rays += more.bsdf_rays;
     paths += more.paths;
@@ -26,6 +27,7 @@ struct BlockCounts {
 enum class Stage {
   pilots,
   camera_rays,
+  outlines,
   closest_hits,
   medium,
   emission,
@@ -36,9 +38,9 @@ enum class Stage {
   following,
   sums
 };
-inline constexpr std::array stage_names{"pilots",       "camera_rays",   "closest_hits", "medium",
-                                        "emission",     "light_samples", "aiming",       "shadow_rays",
-                                        "bsdf_samples", "following",     "sums"};
+inline constexpr std::array stage_names{"pilots",      "camera_rays",  "outlines",      "closest_hits",
+                                        "medium",      "emission",     "light_samples", "aiming",
+                                        "shadow_rays", "bsdf_samples", "following",     "sums"};
 
 class StageClock {
  public:

@@ -3,6 +3,7 @@
 
 #include "integrator/camera_stage.h"
 #include "integrator/contribution.h"
+#include "integrator/hit_on_light.h"
 #include "integrator/vertex.h"
 #include "integrator/weights.h"
 #include "lightsampler/light_sampler.h"
@@ -76,17 +77,13 @@ template <class F>
   const PathColumns& path = block.path;
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
     const Hit<F> hit = load_hit<F>(path.hit, i);
-    const Mask<F> is_hit = less(Int<F>(-1), hit.geometry);
-    const Int<F> light = gather(scene.geometry.light.data(), select(is_hit, hit.geometry, Int<F>(0)));
-    const Mask<F> is_light = mask_and(is_hit, less(Int<F>(-1), light));
-    if (!any(is_light)) continue;
     const Ray<F> ray = load_ray<F>(path.ray, i);
-    Vec3<F> ng = normalize(hit.ng);
-    const F cos_theta_ray = dot(ng, ray.direction);
-    const Mask<F> is_turned = mask_and(scene.lights.is_twosided<F>(light, is_light), cos_theta_ray > F(0));
-    ng = select(is_turned, -ng, ng);
-    const Mask<F> is_front = mask_and(is_light, mask_or(is_turned, cos_theta_ray < F(0)));
+    const HitOnLight<F> on_light(scene, ray, hit);
+    Mask<F> is_front = on_light.is_there;
+    if (vertex == 0 && block.has_outlines)  // There rays of their own have found it.
+      is_front = mask_and(is_front, mask_not(load_mask<F>(&block.is_at_outline[i])));
     if (!any(is_front)) continue;
+    const Int<F> light = on_light.light;
     const Vec3<F> position = ray.origin + ray.direction * hit.t;
     const MetLight<F> met = met_light<F>(rules, path, i, vertex, is_front, [&](const Receiver<F>& receiver) {
       const LightTechnique technique = rules.light_samples()->technique;
@@ -94,16 +91,14 @@ template <class F>
                                ? scene.lights.facet_at<F>(light, hit.primitive, position, is_front)
                                : Int<F>(whole_light);
       const F pmf = light_sampler.pmf<F>(receiver, select(is_front, light, Int<F>(0)), facet);
-      const LightHit<F> hit_on_light{position, ng, ray.direction, facet, light_sampler.chooses_facets(),
-                                     technique};
+      const LightHit<F> hit_on_light{
+          position, on_light.ng, ray.direction, facet, light_sampler.chooses_facets(), technique};
       return scene.lights.pdf_solid_angle<F>(light, pmf, receiver, hit_on_light, is_front);
     });
-    const Color<F> radiance = scene.lights.radiance<F>(light, is_front, [&](const Mask<F>& lanes) {
-      return surface_uv<F>(scene.geometry, hit.geometry, hit.primitive, hit.barycentric, ng, lanes);
-    });
-    add_contribution<F>(block, i, is_front,
-                        met.controlled(load_lanes<F>(path.throughput, i) * radiance * met.weight),
-                        {light, Technique::bsdf, vertex});
+    add_contribution<F>(
+        block, i, is_front,
+        met.controlled(load_lanes<F>(path.throughput, i) * on_light.radiance(scene, hit) * met.weight),
+        {light, Technique::bsdf, vertex});
   }
   block.clock.finish(Stage::emission);
 }

@@ -59,8 +59,13 @@ ByBoth best_rules(Heuristic heuristic, int light_samples) {
                      .technique = LightTechnique::automatic},
           .only_where_glossy = true};
 }
-PathRules path_rules(Heuristic heuristic) { return PathRules::paths(best_rules(heuristic, 1)); }
-PathRules direct_light_rules(Heuristic heuristic) { return PathRules::direct(best_rules(heuristic, 4)); }
+constexpr int best_outline_rays = 16;
+PathRules path_rules(Heuristic heuristic) {
+  return PathRules::paths(best_rules(heuristic, 1)).with_outline_rays(best_outline_rays);
+}
+PathRules direct_light_rules(Heuristic heuristic) {
+  return PathRules::direct(best_rules(heuristic, 4)).with_outline_rays(best_outline_rays);
+}
 
 constexpr NamedPathIntegrator path_integrators[]{
     {"path", "path",
@@ -192,7 +197,9 @@ std::string rules_text(const ByBoth& by) {
   return text;
 }
 std::string rules_text(const PathRules& rules) {
-  return std::visit([](const auto& by) { return rules_text(by); }, rules.direct_light());
+  std::string text = std::visit([](const auto& by) { return rules_text(by); }, rules.direct_light());
+  if (rules.outline_rays() > 0) text += fmt::format(" outline_rays={}", rules.outline_rays());
+  return text;
 }
 std::string rules_text(const ShowNormals&) { return ""; }
 std::string rules_text(const ShowMaterial&) { return ""; }

@@ -5,6 +5,7 @@
 #include "integrator/hit_stage.h"
 #include "integrator/light_stage.h"
 #include "integrator/pilot_stage.h"
+#include "integrator/seen_light_stage.h"
 
 #include <memory>
 
@@ -51,6 +52,7 @@ template <class F>
 void path(const PathSetting& with, SampleBlock& block) {
   make_cuts<F>(with.scene, with.light_sampler, block);
   camera_rays<F>(with.scene, block);
+  add_lamps_at_outlines<F>(with.scene, block, with.rules.outline_rays());
   visit<F>(with, block, 0);
   const int branches = with.rules.bsdf_samples(0);
   if (branches <= 1) return go_on<F>(with, block, 0);

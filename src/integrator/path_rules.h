@@ -50,6 +50,15 @@ class PathRules {
     return changed;
   }
 
+  /// Camera rays of their own by which a sample finds the lamps that the camera sees, where the image of one
+  /// may end in the pixel; 0: its camera ray does everywhere.
+  int outline_rays() const { return outline_rays_; }
+  PathRules with_outline_rays(int count) const {
+    PathRules changed = *this;
+    changed.outline_rays_ = count;
+    return changed;
+  }
+
   /// Whether light is scattered at the vertex of this number; else only its emission counts.
   bool is_scattering(int vertex) const { return vertex == 0 || length_ != PathLength::one_vertex; }
   bool is_dirac_only() const { return length_ == PathLength::through_diracs; }
@@ -81,10 +90,10 @@ class PathRules {
     return by && by->only_where_glossy;
   }
 
-  /// The most that a sample takes of light samples, or of BSDF samples, at one vertex.
+  /// The most that a sample takes of light samples, or of BSDF samples, at one vertex, or of camera rays.
   int most_samples() const {
     return std::max(
-        {1, bsdf_samples(0),
+        {1, outline_rays_, bsdf_samples(0),
          light_samples() ? std::max({light_draws(0), light_draws(1), light_count(0) * candidates(0)}) : 0});
   }
 
@@ -108,6 +117,7 @@ class PathRules {
       : direct_light_(direct_light), length_(length) {}
   DirectLight direct_light_;
   PathLength length_;
+  int outline_rays_ = 0;
 };
 
 }  // namespace etendue

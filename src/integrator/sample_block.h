@@ -55,6 +55,10 @@ struct SampleBlock {
   std::span<const LayerSet> layer_sets;
   std::vector<ColorColumn> layers;  ///< Parts of the radiance, of one set after the other; mostly none.
 
+  /// -1 where a sample's lamps at vertex 0 come from rays of their own, 0 elsewhere; set where there are any.
+  Column<std::int32_t> is_at_outline;
+  bool has_outlines = false;
+
   PathColumns path;
   bool is_in_sample_order = true;  ///< Row i of `path` is sample i: no path has been left out yet.
 

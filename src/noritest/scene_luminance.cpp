@@ -22,6 +22,7 @@ void cover_film_by_one_pixel(Scene& scene, SamplerKind sampler) {
   camera.per_px_y = camera.per_px_y * float(camera.height_px);
   camera.width_px = camera.height_px = 1;
   scene.filter = PixelFilter::box();
+  scene.lamp_outlines = LampOutlines(camera, scene.filter, scene.geometry, scene.lights);
   scene.sampler = sampler;
 }
 

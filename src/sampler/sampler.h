@@ -35,7 +35,7 @@ inline constexpr std::uint32_t vertex_stride = 4;
 /// Which candidate of a light sample is kept; out of the way of the pairs above at any vertex.
 inline constexpr std::uint32_t selection = 0x20000000;
 /// Out of the way of any path's vertices.
-inline constexpr std::uint32_t lens = 0x40000000;
+inline constexpr std::uint32_t lens = 0x40000000, outline_film = 0x60000000, outline_lens = 0x60000001;
 
 /// The pair of a consumer at a vertex of a path; vertex 0 is what the camera sees.
 constexpr std::uint32_t at_vertex(std::uint32_t pair, std::uint32_t vertex) {

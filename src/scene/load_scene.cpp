@@ -90,15 +90,18 @@ class Loader {
     const Clock::time_point start_of_build = Clock::now();
     RayCaster rays(geometry_, settings_.edges);
     const double seconds_build = seconds_since(start_of_build);
+    const PixelFilter filter = filter_ ? *filter_ : PixelFilter::gaussian();
+    LampOutlines lamp_outlines(*camera_, filter, geometry_, lights_);
     return {Scene{{0, 0, 0},
                   *camera_,
-                  filter_ ? *filter_ : PixelFilter::gaussian(),
+                  filter,
                   std::move(geometry_),
                   std::move(rays),
                   Materials(std::move(materials_)),
                   std::move(lights_),
                   medium_,
-                  sampler_},
+                  sampler_,
+                  std::move(lamp_outlines)},
             std::move(places_),
             integrator_ ? *integrator_ : Object{},
             samples_per_pixel_,

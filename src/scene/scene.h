@@ -9,6 +9,7 @@
 #include "light/light.h"
 #include "medium/homogeneous.h"
 #include "sampler/sampler.h"
+#include "scene/lamp_outlines.h"
 
 #include <optional>
 
@@ -24,6 +25,7 @@ struct Scene {
   Lights lights;
   std::optional<HomogeneousMedium> medium;
   SamplerKind sampler;
+  LampOutlines lamp_outlines{};  ///< Of `camera` and `filter`.
 };
 
 }  // namespace etendue

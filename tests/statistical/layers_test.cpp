@@ -209,8 +209,8 @@ TEST_P(LayersOf, DepthZeroAreTheImageOfBlackSurfaces) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Named, LayersOf,
-                         ::testing::Values("light", "direct", "average", "mis", "every_light", "whitted",
-                                           "path_ems", "path_mats", "path_mis"),
+                         ::testing::Values("path", "direct_light", "light", "direct", "average", "mis",
+                                           "every_light", "whitted", "path_ems", "path_mats", "path_mis"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Layers, OfOneScatteringAreTheImageOfTheDirectIntegrator) {

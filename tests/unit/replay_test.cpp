@@ -169,8 +169,8 @@ TEST(ReplayOfSeveralBsdfSamples, EachHasAFreeFlightOfItsOwn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Replay,
-                         testing::Values("light", "direct", "average", "mis", "path_mis", "path_ems",
-                                         "path_mats", "whitted", "every_light"));
+                         testing::Values("path", "direct_light", "light", "direct", "average", "mis",
+                                         "path_mis", "path_ems", "path_mats", "whitted", "every_light"));
 
 }  // namespace
 }  // namespace etendue
