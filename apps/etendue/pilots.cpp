@@ -17,23 +17,28 @@ std::optional<ErrorGoal> error_goal(const RenderOptions& options) {
 namespace {
 
 std::string budget_text(const LightBudget& budget) {
-  return fmt::format("{} light sample{} of {} candidate{}", budget.light_samples,
-                     budget.light_samples == 1 ? "" : "s", budget.candidates,
-                     budget.candidates == 1 ? "" : "s");
+  const auto count = [](int number, std::string_view what) {
+    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+  };
+  std::string text = fmt::format("{} of {}", count(budget.light_samples, "light sample"),
+                                 count(budget.candidates, "candidate"));
+  if (budget.glossy_candidates != budget.candidates)
+    text += fmt::format(" ({} where glossy)", budget.glossy_candidates);
+  if (budget.bsdf_samples > 1) text += fmt::format(" and {} BSDF samples", budget.bsdf_samples);
+  return text;
 }
 
-/// Nothing where light samples or candidates were asked for, or there is no choice.
+/// Nothing where a number of samples or candidates was asked for, or there is no choice.
 std::optional<BudgetPilot> settle_budget(const RenderOptions& options, const Scene& scene,
                                          RenderSettings& settings) {
   const IntegratorSettings usual = settled(settings.integrator, scene.lights);
   std::optional<BudgetPilot> pilot;
-  if (!options.integrator.shadow_rays) pilot = light_budget_for(scene, settings, &stop_request);
+  if (!options.integrator.shadow_rays && !options.integrator.bsdf_samples)
+    pilot = light_budget_for(scene, settings, &stop_request);
   settings.integrator = pilot ? with_light_budget(settings.integrator, pilot->chosen) : usual;
   if (!pilot || options.is_quiet || pilot->chosen == pilot->tried.front().budget) return pilot;
-  const auto chosen = std::ranges::find(pilot->tried, pilot->chosen, &TriedBudget::budget);
   say("a pilot of {:.1f} s takes {} a camera ray, not {}: about {:.1f} times as efficient here\n",
-      pilot->seconds, budget_text(pilot->chosen), budget_text(pilot->tried.front().budget),
-      chosen->efficiency() / pilot->tried.front().efficiency());
+      pilot->seconds, budget_text(pilot->chosen), budget_text(pilot->tried.front().budget), pilot->gain());
   return pilot;
 }
 

@@ -15,7 +15,7 @@ std::optional<ErrorGoal> error_goal(const RenderOptions& options);
 
 /// Those that were rendered.
 struct Pilots {
-  std::optional<BudgetPilot> budget;          ///< Of light samples and their candidates.
+  std::optional<BudgetPilot> budget;          ///< Of light samples, their candidates and BSDF samples.
   std::optional<WeightPilot> weights;         ///< Of --weights optimal.
   std::optional<Pilot> samples;               ///< Of --error and --time.
   std::optional<AllocationPilot> allocation;  ///< Of --adaptive.

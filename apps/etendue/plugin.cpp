@@ -10,11 +10,12 @@ namespace {
 
 void check_options(const IntegratorOptions& options) {
   const bool is_asked_more = !options.light_sampler.empty() || !options.technique.empty() ||
-                             !options.heuristic.empty() || options.candidates || options.shadow_rays;
+                             !options.heuristic.empty() || options.candidates || options.shadow_rays ||
+                             options.bsdf_samples;
   if (is_asked_more)
     throw InputError(
-        "an integrator of --plugin does not know --light-sampler, --technique, --weights, --candidates and "
-        "--shadow-rays\nleave them out");
+        "an integrator of --plugin does not know --light-sampler, --technique, --weights, --candidates, "
+        "--shadow-rays and --bsdf-samples\nleave them out");
 }
 
 }  // namespace

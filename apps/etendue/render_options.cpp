@@ -90,6 +90,12 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
                   "Light samples at the first vertex, each with a shadow ray; 1 to 65536 "
                   "[path, direct_light: 1 or 4, as a pilot finds; others: 1, or as the keys of the file say]")
       ->check(number);
+  command
+      .add_option("--bsdf-samples", options.bsdf_samples,
+                  "Directions from the BSDF at the first vertex, for path integrators each with a path of "
+                  "its own behind it; 1 to 65536 [path: 1, 2 or 4, as a pilot finds; others: 1, or as the "
+                  "keys of the file say]")
+      ->check(number);
   command.add_option("--weights", options.heuristic,
                      "How light samples and BSDF samples share light that both find: balance, power, "
                      "maximum, compensated or optimal "
@@ -208,6 +214,7 @@ IntegratorSettings integrator_for(const IntegratorOptions& options, const Loaded
   if (!options.technique.empty()) settings = with_light_technique(settings, options.technique);
   if (options.candidates) settings = with_candidates(settings, *options.candidates);
   if (options.shadow_rays) settings = with_shadow_rays(settings, *options.shadow_rays);
+  if (options.bsdf_samples) settings = with_bsdf_samples(settings, *options.bsdf_samples);
   if (!options.heuristic.empty()) settings = with_heuristic(settings, options.heuristic);
   return settings;
 }
@@ -225,6 +232,7 @@ std::string replay_command(const RenderOptions& options, const InvalidSample& sa
   if (!integrator.technique.empty()) add("--technique", integrator.technique);
   if (integrator.candidates) add("--candidates", *integrator.candidates);
   if (integrator.shadow_rays) add("--shadow-rays", *integrator.shadow_rays);
+  if (integrator.bsdf_samples) add("--bsdf-samples", *integrator.bsdf_samples);
   if (!integrator.heuristic.empty()) add("--weights", integrator.heuristic);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
   if (options.is_adaptive) command += " --adaptive";

@@ -15,7 +15,7 @@ namespace etendue::app {
 /// Which integrator, and what it is to do in another way than by itself.
 struct IntegratorOptions {
   std::string name, light_sampler, technique, heuristic;
-  std::optional<int> candidates, shadow_rays;
+  std::optional<int> candidates, shadow_rays, bsdf_samples;
 };
 
 struct RenderOptions {

@@ -66,6 +66,7 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendering& rende
     fields.emplace_back("lightSamples", std::to_string(rules->light_count(0)));
     fields.emplace_back("candidates", std::to_string(rules->candidates(0)));
     fields.emplace_back("glossyCandidates", std::to_string(rules->glossy_candidates(0)));
+    fields.emplace_back("bsdfSamples", std::to_string(rules->bsdf_samples(0)));
   }
   return fields;
 }

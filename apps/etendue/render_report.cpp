@@ -96,8 +96,10 @@ nlohmann::ordered_json stats_of(const BudgetPilot& pilot) {
   for (const TriedBudget& each : pilot.tried)
     tried.push_back({{"light_samples", each.budget.light_samples},
                      {"candidates", each.budget.candidates},
-                     {"error", each.error},
-                     {"relative_efficiency", each.efficiency() / pilot.tried.front().efficiency()}});
+                     {"glossy_candidates", each.budget.glossy_candidates},
+                     {"bsdf_samples", each.budget.bsdf_samples},
+                     {"error", each.error()},
+                     {"relative_efficiency", each.gain_over(pilot.tried.front())}});
   return {{"pilot_seconds", pilot.seconds}, {"tried", tried}};
 }
 
@@ -141,6 +143,8 @@ nlohmann::ordered_json stats(const Rendering& rendering) {
   json["light_samples"] = rules ? rules->light_count(0) : 0;
   json["candidates"] = rules ? rules->candidates(0) : 0;
   json["glossy_candidates"] = rules ? rules->glossy_candidates(0) : 0;
+  const PathRules* path_rules = settings.integrator.path_rules();
+  json["bsdf_samples"] = path_rules ? path_rules->bsdf_samples(0) : 0;
   if (const auto& pilot = rendering.pilots.budget) json["light_budget"] = stats_of(*pilot);
   if (const auto& pilot = rendering.pilots.weights)
     json["optimal_weights"] = {{"pilot_seconds", pilot->seconds},

@@ -9,14 +9,16 @@ namespace etendue {
 
 struct BlockCounts {
   std::int64_t camera_rays = 0, outline_rays = 0, shadow_rays = 0, bsdf_rays = 0;
-  std::int64_t paths = 0;  ///< Living paths, summed over the vertices that they arrive at.
-  std::int64_t lanes = 0;  ///< Lanes of the packets that they took.
+  std::int64_t candidates = 0;  ///< Of light samples; where there is no choice, these themselves.
+  std::int64_t paths = 0;       ///< Living paths, summed over the vertices that they arrive at.
+  std::int64_t lanes = 0;       ///< Lanes of the packets that they took.
 
   BlockCounts& operator+=(const BlockCounts& more) {
     camera_rays += more.camera_rays;
     outline_rays += more.outline_rays;
     shadow_rays += more.shadow_rays;
     bsdf_rays += more.bsdf_rays;
+    candidates += more.candidates;
     paths += more.paths;
     lanes += more.lanes;
     return *this;

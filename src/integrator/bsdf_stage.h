@@ -17,12 +17,12 @@ inline constexpr int first_roulette_vertex = 2;
 /// No path goes on for certain, so that light between perfect mirrors comes to an end.
 inline constexpr float most_survival = 0.99f;
 
-/// The probability that Russian roulette lets a path go on: min(max(throughput) eta^2, 0.99). The throughput
-/// of radiance falls by eta^2 on the way into a denser medium, and rises again on the way out: that is no
-/// reason to end it.
+/// The probability that Russian roulette lets a path go on: min(factor max(throughput) eta^2, 0.99). The
+/// throughput of radiance falls by eta^2 on the way into a denser medium, and rises again on the way out:
+/// that is no reason to end it. \param factor PathRules::roulette_factor()
 template <class F>
-F survival(const Color<F>& throughput, const F& eta) {
-  return min(max(max(throughput.r, throughput.g), throughput.b) * eta * eta, F(most_survival));
+F survival(const Color<F>& throughput, const F& eta, float factor) {
+  return min(max(max(throughput.r, throughput.g), throughput.b) * eta * eta * F(factor), F(most_survival));
 }
 
 /// For each path: a direction from the BSDF (or phase function) at its vertex, the ray along it, and the
@@ -72,7 +72,7 @@ template <class F>
     if (rules.length() == PathLength::one_vertex) goes_on = mask_and(goes_on, mask_not(is_alone));
     if (rules.is_dirac_only()) goes_on = mask_and(goes_on, is_dirac);
     if (vertex_number >= first_roulette_vertex) {
-      const F probability = survival(throughput, eta);
+      const F probability = survival(throughput, eta, rules.roulette_factor());
       const F u_roulette = to_unit_float(
           sample_bits<F>(scene, path, i, dimension::at_vertex(dimension::choice, vertex_number)).x);
       goes_on = mask_and(goes_on, u_roulette < probability);

@@ -61,7 +61,8 @@ ByBoth best_rules(Heuristic heuristic, int light_samples) {
 }
 constexpr int best_outline_rays = 16;
 PathRules path_rules(Heuristic heuristic) {
-  return PathRules::paths(best_rules(heuristic, 1)).with_outline_rays(best_outline_rays);
+  constexpr float survival_factor = 2;
+  return PathRules::paths(best_rules(heuristic, 1), survival_factor).with_outline_rays(best_outline_rays);
 }
 PathRules direct_light_rules(Heuristic heuristic) {
   return PathRules::direct(best_rules(heuristic, 4)).with_outline_rays(best_outline_rays);
@@ -199,6 +200,7 @@ std::string rules_text(const ByBoth& by) {
 std::string rules_text(const PathRules& rules) {
   std::string text = std::visit([](const auto& by) { return rules_text(by); }, rules.direct_light());
   if (rules.outline_rays() > 0) text += fmt::format(" outline_rays={}", rules.outline_rays());
+  if (rules.survival_factor() != 1) text += fmt::format(" survival_factor={}", rules.survival_factor());
   return text;
 }
 std::string rules_text(const ShowNormals&) { return ""; }
@@ -323,6 +325,17 @@ IntegratorSettings with_shadow_rays(const IntegratorSettings& integrator, int sh
   return {integrator.name, integrator.path_rules()->with_light_samples(lights)};
 }
 
+IntegratorSettings with_bsdf_samples(const IntegratorSettings& integrator, int bsdf_samples) {
+  const PathRules* rules = integrator.path_rules();
+  if (!rules || !rules->has_bsdf_samples())
+    throw InputError(
+        fmt::format("{} BSDF samples: the integrator {} does not look for light by samples of the BSDF\n"
+                    "take path, direct_light, direct, mis, path_mats or path_mis",
+                    bsdf_samples, integrator.name));
+  check_range(bsdf_samples, "BSDF samples", most_samples_of_a_kind);
+  return {integrator.name, rules->with_bsdf_samples(bsdf_samples)};
+}
+
 IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::string_view heuristic) {
   const Heuristic named = heuristic_named(heuristic, {});
   if (heuristic_name(integrator).empty())
@@ -350,17 +363,18 @@ IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& l
   // Where the cut of a tile holds each facet by itself, points stay better distributed without a choice among
   // candidates than it could make them, unless lobes are narrow.
   const bool are_all_in_cut = facets <= LightCut::most_clusters;
-  constexpr int several = 8, many = 16;
+  constexpr int several = 8, many = 16, fewest_glossy = 4;
   constexpr std::int64_t swarm = 1 << 16;  // Of facets: there a shadow ray takes as long as many candidates.
+  const int candidates = are_all_in_cut ? 1 : facets <= swarm ? several : many;
   return with_light_budget(integrator, {.light_samples = rules->light_count(0),
-                                        .candidates = are_all_in_cut    ? 1
-                                                      : facets <= swarm ? several
-                                                                        : many});
+                                        .candidates = candidates,
+                                        .glossy_candidates = std::max(candidates, fewest_glossy),
+                                        .bsdf_samples = rules->bsdf_samples(0)});
 }
 
 LightBudget light_budget(const IntegratorSettings& integrator) {
   const PathRules& rules = *integrator.path_rules();
-  return {rules.light_count(0), rules.candidates(0)};
+  return {rules.light_count(0), rules.candidates(0), rules.glossy_candidates(0), rules.bsdf_samples(0)};
 }
 
 bool has_open_light_budget(const IntegratorSettings& integrator) {
@@ -369,13 +383,13 @@ bool has_open_light_budget(const IntegratorSettings& integrator) {
 }
 
 IntegratorSettings with_light_budget(const IntegratorSettings& integrator, const LightBudget& budget) {
-  constexpr int fewest_glossy = 4;
   LightSamples samples = light_samples_of(integrator, "a budget of light samples");
   if (samples.later_count == 0) samples.later_count = samples.count;
   samples.count = budget.light_samples;
   samples.candidates = budget.candidates;
-  samples.glossy_candidates = std::max(budget.candidates, fewest_glossy);
-  return {integrator.name, integrator.path_rules()->with_light_samples(samples)};
+  samples.glossy_candidates = budget.glossy_candidates;
+  const PathRules rules = integrator.path_rules()->with_light_samples(samples);
+  return {integrator.name, rules.has_bsdf_samples() ? rules.with_bsdf_samples(budget.bsdf_samples) : rules};
 }
 
 LightSampler light_sampler_for(const IntegratorSettings& integrator, const Lights& lights) {

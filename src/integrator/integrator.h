@@ -57,6 +57,10 @@ IntegratorSettings with_candidates(const IntegratorSettings& integrator, int can
 /// The same with so many light samples at the first vertex, 1 to 65536; those behind take as many as before.
 /// Throws InputError for other numbers, and where the integrator samples no lights.
 IntegratorSettings with_shadow_rays(const IntegratorSettings& integrator, int shadow_rays);
+/// The same with so many BSDF samples at the first vertex, 1 to 65536, each with a path of its own behind it
+/// where there are any. Throws InputError for other numbers, and where the integrator does not look for light
+/// by BSDF samples.
+IntegratorSettings with_bsdf_samples(const IntegratorSettings& integrator, int bsdf_samples);
 /// The same with weights by a name that heuristic_name gives. Throws InputError for another name, and where
 /// the weights of the integrator do not depend on densities.
 IntegratorSettings with_heuristic(const IntegratorSettings& integrator, std::string_view heuristic);
@@ -75,15 +79,17 @@ IntegratorSettings with_light_technique(const IntegratorSettings& integrator, st
 /// by whether surfaces are diffuse (docs/light_sampling.md).
 IntegratorSettings settled(const IntegratorSettings& integrator, const Lights& lights);
 
-/// What the first vertex of a path takes: light samples, and of how many candidates each is one where
-/// surfaces are diffuse; where they are not, of four at least.
+/// What the first vertex of a path takes.
 struct LightBudget {
-  int light_samples, candidates;
+  int light_samples = 1;
+  int candidates = 1;         ///< Of which each light sample is one, where surfaces are diffuse.
+  int glossy_candidates = 1;  ///< Where they are not; no fewer.
+  int bsdf_samples = 1;       ///< Each, where there is a second vertex, with a path of its own.
   friend bool operator==(const LightBudget&, const LightBudget&) = default;
 };
 /// Of a settled integrator that samples lights.
 LightBudget light_budget(const IntegratorSettings& integrator);
-/// Whether it leaves its candidates to the scene.
+/// Whether it leaves its candidates to the scene: path and direct_light do.
 bool has_open_light_budget(const IntegratorSettings& integrator);
 /// The same with this budget; vertices behind the first take as many light samples as before. Throws
 /// InputError where the integrator samples no lights.

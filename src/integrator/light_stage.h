@@ -14,24 +14,19 @@
 
 namespace etendue {
 
-/// One light sample of the paths i, i + 1 ...: one candidate, or one of several. The candidates of all light
+/// One light sample of the paths i, i + 1 ...: one of `candidates` that are there. Those of all light
 /// samples follow one another in one sequence over the samples of the pixel; each pass has its own, as every
 /// second or third point of one is badly distributed.
 template <class F>
 DirectLightSample<F> light_sample_of(const Scene& scene, const LightSampler& light_sampler,
                                      const PathRules& rules, const SampleBlock& block, int i,
                                      const Vertex<F>& vertex, const Receiver<F>& receiver,
-                                     const LightSampleNumber& which) {
+                                     const Int<F>& candidates, const LightSampleNumber& which) {
   using U = UInt<F>;
   const int light_samples = rules.light_count(which.vertex), few = rules.candidates(which.vertex),
             many = rules.glossy_candidates(which.vertex);
-  Int<F> candidates(many);
-  Mask<F> is_glossy = vertex.is_there;
-  if (few != many) {
-    is_glossy = mask_not(vertex.leaves_direct_light_to_lights(scene));
-    candidates = select(is_glossy, candidates, Int<F>(few));
-  }
-  const int most = any(mask_and(vertex.is_there, is_glossy)) ? many : few;
+  const Mask<F> is_many = mask_and(vertex.is_there, equal(candidates, Int<F>(many)));
+  const int most = any(is_many) ? many : few;
   const F share = F(1) / (to_float(candidates) * F(float(light_samples)));
   const U first = (load_lanes<U>(&block.path.index[i]) * U(std::uint32_t(light_samples)) +
                    U(std::uint32_t(which.number))) *
@@ -64,18 +59,22 @@ template <class F>
   ShadowRays& shadow = block.shadow;
   shadow.samples = int(numbers.size());
   shadow.stride = path.padded_count;
+  const int vertex_number = numbers.front().vertex;
+  F drawn(0);
   for (int i = 0; i < path.padded_count; i += lane_count_v<F>) {
     const Vertex<F> vertex(scene, load_ray<F>(path.ray, i), load_hit<F>(path.hit, i));
     if (!any(vertex.is_there)) {
       for (int k = 0; k < shadow.samples; ++k) store_lanes(&shadow.is_needed[shadow.row(k, i)], Int<F>(0));
       continue;
     }
-    const Receiver<F> receiver = receiver_at<F>(scene, block, i, vertex, numbers.front().vertex);
+    const Receiver<F> receiver = receiver_at<F>(scene, block, i, vertex, vertex_number);
     const Color<F> throughput = load_lanes<F>(path.throughput, i);
-    const Colorf* alpha = rules.alpha(numbers.front().vertex);
+    const Colorf* alpha = rules.alpha(vertex_number);
+    const Int<F> candidates = candidates_of<F>(scene, rules, vertex_number, vertex);
+    drawn = drawn + select(vertex.is_there, to_float(candidates), F(0));
     for (int k = 0; k < shadow.samples; ++k) {
       const DirectLightSample<F> sample = light_sample_of<F>(scene, light_sampler, rules, block, i, vertex,
-                                                             receiver, numbers[std::size_t(k)]);
+                                                             receiver, candidates, numbers[std::size_t(k)]);
       const int row = shadow.row(k, i);
       Color<F> unshadowed = sample.unshadowed * throughput;
       if (alpha) unshadowed = unshadowed + control_variate(*alpha, sample.control);
@@ -87,6 +86,9 @@ template <class F>
       store_lanes(&shadow.aim[row], sample.aim);
     }
   }
+  alignas(64) std::array<float, lane_count_v<F>> of_lanes;
+  store_lanes(of_lanes.data(), drawn);
+  for (const float of_lane : of_lanes) block.counts.candidates += std::int64_t(of_lane) * shadow.samples;
   block.clock.finish(Stage::light_samples);
 }
 

@@ -5,6 +5,7 @@
 #include "integrator/direct_light_rules.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <variant>
 
 namespace etendue {
@@ -16,7 +17,12 @@ enum class PathLength { one_vertex, unlimited, through_diracs };
 class PathRules {
  public:
   static PathRules direct(const DirectLight& direct_light) { return {direct_light, PathLength::one_vertex}; }
-  static PathRules paths(const DirectLight& direct_light) { return {direct_light, PathLength::unlimited}; }
+  /// \param survival_factor roulette lets paths go on so many times as often as their throughput says
+  static PathRules paths(const DirectLight& direct_light, float survival_factor = 1) {
+    PathRules rules{direct_light, PathLength::unlimited};
+    rules.survival_factor_ = survival_factor;
+    return rules;
+  }
   /// Whitted's: no directions but the Dirac ones are sampled, so light samples must do.
   static PathRules whitted(const ByLights& direct_light) {
     return {direct_light, PathLength::through_diracs};
@@ -35,6 +41,15 @@ class PathRules {
     PathRules changed = *this;
     if (auto* by = std::get_if<ByLights>(&changed.direct_light_)) by->lights = lights;
     if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->lights = lights;
+    return changed;
+  }
+  /// Whether directions from the BSDF are sampled for the light that they meet.
+  bool has_bsdf_samples() const { return !std::holds_alternative<ByLights>(direct_light_); }
+  /// The same rules with so many of them at the first vertex; has_bsdf_samples() must hold.
+  PathRules with_bsdf_samples(int count) const {
+    PathRules changed = *this;
+    if (auto* by = std::get_if<ByBsdf>(&changed.direct_light_)) by->bsdf_samples = count;
+    if (auto* by = std::get_if<ByBoth>(&changed.direct_light_)) by->bsdf_samples = count;
     return changed;
   }
   /// The same rules with another heuristic; heuristic() must not be null.
@@ -71,6 +86,11 @@ class PathRules {
     return length_ == PathLength::one_vertex ? 0 : 1;
   }
 
+  /// What the throughput behind the first vertex is multiplied with before roulette looks at it: of several
+  /// paths from there each is worth as much as if it were alone.
+  float roulette_factor() const { return survival_factor_ * float(bsdf_samples(0)); }
+  float survival_factor() const { return survival_factor_; }
+
   /// Light samples that a vertex takes.
   int light_count(int vertex) const {
     const LightSamples& lights = *light_samples();
@@ -90,11 +110,14 @@ class PathRules {
     return by && by->only_where_glossy;
   }
 
-  /// The most that a sample takes of light samples, or of BSDF samples, at one vertex, or of camera rays.
-  int most_samples() const {
-    return std::max(
-        {1, outline_rays_, bsdf_samples(0),
-         light_samples() ? std::max({light_draws(0), light_draws(1), light_count(0) * candidates(0)}) : 0});
+  /// The most that a sample takes of light samples, or of BSDF samples, at one vertex of all its paths, or of
+  /// camera rays.
+  std::int64_t most_samples() const {
+    const std::int64_t paths = std::max(1, bsdf_samples(0)),
+                       rays = std::max<std::int64_t>(paths, outline_rays_);
+    if (!light_samples()) return rays;
+    return std::max({rays, std::int64_t(light_draws(0)), std::int64_t(light_count(0)) * candidates(0),
+                     is_scattering(1) ? paths * light_draws(1) : 0});
   }
 
   /// The heuristic where light is found by both techniques; else null.
@@ -117,6 +140,7 @@ class PathRules {
       : direct_light_(direct_light), length_(length) {}
   DirectLight direct_light_;
   PathLength length_;
+  float survival_factor_ = 1;
   int outline_rays_ = 0;
 };
 

@@ -5,6 +5,14 @@
 
 namespace etendue {
 
+/// Of how many candidates each light sample of a vertex is one.
+template <class F>
+Int<F> candidates_of(const Scene& scene, const PathRules& rules, int vertex_number, const Vertex<F>& vertex) {
+  const int few = rules.candidates(vertex_number), many = rules.glossy_candidates(vertex_number);
+  if (few == many) return Int<F>(many);
+  return select(vertex.leaves_direct_light_to_lights(scene), Int<F>(few), Int<F>(many));
+}
+
 /// Resampled importance sampling (Talbot, Cline and Egbert 2005, "Importance resampling for global
 /// illumination", eq. 5): a candidate stays with a probability in proportion to the luminance of what it adds
 /// where nothing hides it, and then stands for all of them, so that the expectation is that of each alone.

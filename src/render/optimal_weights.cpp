@@ -79,8 +79,8 @@ std::optional<WeightPilot> optimal_alpha_for(const Scene& scene, const RenderSet
   const auto plain = render_with(0);
   if (!plain) return std::nullopt;
   double sum = 0;
-  for (const Color<double>& mean : *plain) sum += luminance(mean);
-  const auto unit = float(sum / double(plain->size()));
+  for (const Color<double>& mean : plain->means) sum += luminance(mean);
+  const auto unit = float(sum / double(plain->means.size()));
   WeightPilot pilot{{0, 0, 0}, 1};
   if (unit > 0) {
     // The same samples again: the two differ by the control variate alone.
@@ -89,11 +89,11 @@ std::optional<WeightPilot> optimal_alpha_for(const Scene& scene, const RenderSet
     const auto regression_of = [&](const auto& channel, auto is_taken) {
       Regression regression;
       std::array<double, replicates> x, z;
-      for (std::size_t pixel = 0; pixel * replicates < plain->size(); ++pixel) {
+      for (std::size_t pixel = 0; pixel * replicates < plain->means.size(); ++pixel) {
         if (!is_taken(pixel)) continue;
         for (std::size_t r = 0; r < replicates; ++r) {
-          x[r] = channel((*plain)[pixel * replicates + r]);
-          z[r] = (channel((*controlled)[pixel * replicates + r]) - x[r]) / double(unit);
+          x[r] = channel(plain->means[pixel * replicates + r]);
+          z[r] = (channel(controlled->means[pixel * replicates + r]) - x[r]) / double(unit);
         }
         regression.add(x, z);
       }

@@ -2,8 +2,10 @@
 
 #include "base/hash.h"
 #include "render/kernel.h"
+#include "sampler/sobol.h"
 
 #include <algorithm>
+#include <bit>
 #include <memory>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -16,26 +18,29 @@ struct SquareWorker {
   std::unique_ptr<SampleBlock> block = std::make_unique<SampleBlock>();
   std::vector<Color<double>> means;
   InvalidSamples invalid;
+  RenderCounts counts;
 };
 
-/// One in a tile, at equal distances in the order of tiles: where these divide a row of tiles, squares stand
-/// in a few columns.
-std::vector<PixelRectangle> squares_of(const Scene& scene, int count) {
-  const int width = scene.camera.width_px, height = scene.camera.height_px;
-  const int columns = LightCuts::tiles_across(width), tiles = columns * LightCuts::tiles_across(height);
+}  // namespace
+
+std::vector<PixelRectangle> pilot_squares(int width_px, int height_px, int count) {
+  const int columns = LightCuts::tiles_across(width_px), rows = LightCuts::tiles_across(height_px);
+  // Of the first 2^(i + j) points of a (0,2)-sequence each cell of a grid of 2^i x 2^j has one.
+  const int i = std::bit_width(unsigned(columns - 1)), j = std::bit_width(unsigned(rows - 1));
   std::vector<PixelRectangle> squares;
-  for (int k = 0; k < std::min(count, tiles); ++k) {
-    const std::uint64_t random = hash64(std::uint64_t(k));
-    const int tile = int(std::int64_t(k) * tiles / std::min(count, tiles));
+  for (std::uint64_t k = 0; k >> (i + j) == 0 && squares.size() < std::size_t(count); ++k) {
+    const auto point = owen_sobol_2d<std::uint32_t>(std::uint32_t(k), 1, 2, 3);
+    const int column = int(std::uint64_t(point.x) >> (32 - i)), row = int(std::uint64_t(point.y) >> (32 - j));
+    if (column >= columns || row >= rows) continue;
+    const std::uint64_t random = hash64(k);
     constexpr int side_px = PilotSquares::side_px, places = LightCut::tile_px / side_px;
-    const int x = tile % columns * LightCut::tile_px + side_px * int(random % places),
-              y = tile / columns * LightCut::tile_px + side_px * int(random / places % places);
-    if (x + side_px <= width && y + side_px <= height) squares.push_back({x, y, x + side_px, y + side_px});
+    const int x = column * LightCut::tile_px + side_px * int(random % places),
+              y = row * LightCut::tile_px + side_px * int(random / places % places);
+    if (x + side_px <= width_px && y + side_px <= height_px)
+      squares.push_back({x, y, x + side_px, y + side_px});
   }
   return squares;
 }
-
-}  // namespace
 
 RenderSettings pilot_settings(const RenderSettings& settings, std::uint64_t seed) {
   RenderSettings of_pilot = settings;
@@ -48,19 +53,19 @@ RenderSettings pilot_settings(const RenderSettings& settings, std::uint64_t seed
 
 PilotSquares::PilotSquares(const Scene& scene, const RenderSettings& settings, int count)
     : scene_(scene),
-      squares_(squares_of(scene, count)),
+      squares_(pilot_squares(scene.camera.width_px, scene.camera.height_px, count)),
       light_sampler_(light_sampler_for(settings.integrator, scene.lights)),
       cuts_(LightCuts::tiles_across(scene.camera.width_px) *
             LightCuts::tiles_across(scene.camera.height_px)) {}
 
-std::optional<std::vector<Color<double>>> PilotSquares::render(const RenderSettings& settings, int replicates,
-                                                               int samples_per_replicate,
-                                                               const StopRequest* stop) {
+std::optional<PilotSquares::Rendering> PilotSquares::render(const RenderSettings& settings, int replicates,
+                                                            int samples_per_replicate,
+                                                            const StopRequest* stop) {
   const Kernel& kernel = kernel_for(settings.isa);
   tbb::enumerable_thread_specific<SquareWorker> workers;
   const auto must_stop = [&] { return stop && stop->soon.load(std::memory_order_relaxed); };
   const auto means_of_square = std::size_t(pixels * replicates);
-  std::vector<Color<double>> means(squares_.size() * means_of_square);
+  Rendering rendering{std::vector<Color<double>>(squares_.size() * means_of_square), {}};
   const auto render_square = [&](std::size_t k) {
     if (must_stop()) return;
     SquareWorker& worker = workers.local();
@@ -74,15 +79,22 @@ std::optional<std::vector<Color<double>>> PilotSquares::render(const RenderSetti
                 .block = worker.block.get(),
                 .means = &worker.means,
                 .invalid = &worker.invalid};
+    worker.block->counts = {};
     kernel.render_tile(job);
-    std::ranges::copy(worker.means, means.begin() + std::ptrdiff_t(k * means_of_square));
+    worker.counts.samples += job.unit.samples();
+    worker.counts += worker.block->counts;
+    std::ranges::copy(worker.means, rendering.means.begin() + std::ptrdiff_t(k * means_of_square));
   };
   const int threads = settings.threads > 0 ? settings.threads : available_threads();
   tbb::task_arena arena(std::min(threads, available_threads()));
   arena.execute(
       [&] { tbb::parallel_for(std::size_t{0}, squares_.size(), render_square, tbb::simple_partitioner{}); });
   if (must_stop() || squares_.empty()) return std::nullopt;
-  return means;
+  for (const SquareWorker& worker : workers) {
+    rendering.counts.samples += worker.counts.samples;
+    rendering.counts += worker.counts;
+  }
+  return rendering;
 }
 
 }  // namespace etendue

@@ -18,18 +18,26 @@ inline constexpr double fewest_pixels_for_pilots = 1 << 16;
 /// image has, the same for all seeds, so that what pilots tell is too. No layers.
 RenderSettings pilot_settings(const RenderSettings& settings, std::uint64_t seed);
 
+/// Squares of 2 x 2 pixels, spread evenly over an image of that size, each in a tile of its own that lights
+/// are chosen for; `count`, or as many as there is room for.
+std::vector<PixelRectangle> pilot_squares(int width_px, int height_px, int count);
+
 class PilotSquares {
  public:
   static constexpr int side_px = 2, pixels = side_px * side_px;  ///< Of a square.
 
-  /// Squares of 2 x 2 pixels, each in a tile of its own that lights are chosen for; `count` at most. \param
-  /// scene must outlive it \param settings name the light sampler of all renders
+  struct Rendering {
+    std::vector<Color<double>> means;  ///< Of all replicates of all pixels, one pixel after the other.
+    RenderCounts counts;
+  };
+
+  /// `count` of pilot_squares. \param scene must outlive it \param settings name the light sampler of all
+  /// renders
   PilotSquares(const Scene& scene, const RenderSettings& settings, int count);
 
-  /// The means of all replicates of all pixels, one pixel after the other; none where it was stopped. The
-  /// number of threads changes nothing.
-  std::optional<std::vector<Color<double>>> render(const RenderSettings& settings, int replicates,
-                                                   int samples_per_replicate, const StopRequest* stop);
+  /// None where it was stopped. The number of threads changes nothing.
+  std::optional<Rendering> render(const RenderSettings& settings, int replicates, int samples_per_replicate,
+                                  const StopRequest* stop);
 
  private:
   const Scene& scene_;

@@ -45,9 +45,9 @@ SampleTrace::LightSample trace_of(const Scene& scene, const LightSampler& light_
                                   const LightSampleNumber& which, int k) {
   const PathColumns& path = block.path;
   const Vertex<F> vertex(scene, load_ray<F>(path.ray, 0), load_hit<F>(path.hit, 0));
-  const DirectLightSample<F> sample =
-      light_sample_of<F>(scene, light_sampler, rules, block, 0, vertex,
-                         receiver_at<F>(scene, block, 0, vertex, which.vertex), which);
+  const DirectLightSample<F> sample = light_sample_of<F>(
+      scene, light_sampler, rules, block, 0, vertex, receiver_at<F>(scene, block, 0, vertex, which.vertex),
+      candidates_of<F>(scene, rules, which.vertex, vertex), which);
   const int row = block.shadow.row(k, 0);
   SampleTrace::LightSample trace{sample.light.light,
                                  sample.light.end,

@@ -267,6 +267,13 @@ TEST_F(CommandLine, HowLightsAreSampledStandsInTheStats) {
                        three = stats_with({"--integrator", "light", "--shadow-rays", "3"});
   EXPECT_EQ(three.at("camera_rays"), one.at("camera_rays"));
   EXPECT_GT(three.at("shadow_rays"), 2 * one.at("shadow_rays").get<int>());
+  const nlohmann::json path = stats_with({"--bsdf-samples", "1"}),
+                       paths = stats_with({"--bsdf-samples", "4"});
+  EXPECT_EQ(plain.at("bsdf_samples"), 1);
+  EXPECT_EQ(one.at("bsdf_samples"), 0);
+  EXPECT_EQ(paths.at("bsdf_samples"), 4);
+  EXPECT_EQ(paths.at("camera_rays"), path.at("camera_rays"));
+  EXPECT_GT(paths.at("bsdf_rays"), 3 * path.at("bsdf_rays").get<int>());
   EXPECT_EQ(run({"lint", "scene.xml", "--light-sampler", "power", "--candidates", "5"}).exit_code, 0);
   EXPECT_EQ(run({"lint", "scene.xml", "--integrator", "direct", "--shadow-rays", "5"}).exit_code, 2);
 }

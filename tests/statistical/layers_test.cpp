@@ -213,6 +213,17 @@ INSTANTIATE_TEST_SUITE_P(Named, LayersOf,
                                            "every_light", "whitted", "path_ems", "path_mats", "path_mis"),
                          [](const auto& info) { return std::string(info.param); });
 
+TEST(Layers, OfSeveralPathsFromTheFirstVertexAddUpToTheImage) {
+  RenderSettings settings = settings_of("path", {by_all});
+  settings.integrator = with_bsdf_samples(settings.integrator, 4);
+  settings.noise_parts = by_all;
+  const RenderResult result = render(scene_of().scene, settings);
+  expect_sum(result.film, result.layers, "path, 4 paths");
+  double share = 0;
+  for (const PartNoise& part : result.noise) share += part.variance_share;
+  EXPECT_NEAR(share, 1, 1e-5);
+}
+
 TEST(Layers, OfOneScatteringAreTheImageOfTheDirectIntegrator) {
   for (const auto& [paths, direct] :
        {std::pair{"path_ems", "light"}, {"path_mats", "direct"}, {"path_mis", "mis"}}) {

@@ -8,9 +8,9 @@
 // sample; shadow rays pass through the medium undimmed, or its samples are not weighted, or by the density of
 // one channel alone; scattering in the medium has a cosine; Henyey and Greenstein's g has the wrong sign;
 // several light or BSDF samples are not divided by their number, or their weights do not count them, on
-// either side; the pmf of another light than the one met is in its density; every_light divides by the
-// number of lights; the medium is cut off at the sphere around the
-// shapes; whitted goes on from every surface.
+// either side; of several paths from the first vertex roulette sees the shares, not the paths; the pmf of
+// another light than the one met is in its density; every_light divides by the number of lights; the medium
+// is cut off at the sphere around the shapes; whitted goes on from every surface.
 #include "film_statistics.h"
 #include "image/image_file.h"
 #include "stats/significance.h"
@@ -26,7 +26,7 @@ namespace etendue {
 namespace {
 
 constexpr double family_level = 1e-5;
-constexpr int family_size = 2500;  // At least as many t-tests as are made below.
+constexpr int family_size = 4000;  // At least as many t-tests as are made below.
 
 Film rendered(const Scene& scene, RenderSettings settings, const std::string& what) {
   RenderResult result = render(scene, settings);
@@ -191,7 +191,44 @@ TEST(PathsAgree, UnderAnEnvironmentMapAndAPointLight) {
   expect_agreement(loaded.scene, {{"path_mis", 512}, {"path_ems", 512}}, "environment map and point light");
 }
 
+TEST(PathsAgree, HoweverManyLeaveTheFirstVertex) {
+  const std::string room = coloured_room_xml(48) + mesh_xml("block.obj", phong_xml(0.3, 0.5, 30)) +
+                           sphere_xml({-0.5, 0.2, -0.6}, 0.35, glass_xml(1.5)),
+                    mist = medium_xml({0.1, 0.2, 0.1}, {0.1, 0.2, 0.3}, 0.3, {-1, -1, -1}, {1, 1, 1});
+  for (const std::string& more : {std::string(), mist}) {
+    const LoadedScene loaded =
+        load_scene_text(room + more, {{"block.obj", box_obj({0.35, 0.3, -0.6}, 0.35, false)}});
+    const Film reference = rendered(loaded.scene, "path_mis", 512, 300);
+    std::uint64_t seed = 300;
+    for (const Method& method : {Method{"path", 512}, {"path_mis", 512}, {"path_mats", 1024}})
+      for (const int paths : {1, 2, 4}) {
+        RenderSettings settings = render_settings(method.integrator, method.samples / paths, 4, ++seed);
+        settings.integrator = with_bsdf_samples(settings.integrator, paths);
+        const std::string what = fmt::format("{}, {} paths", method.integrator, paths);
+        expect_equal_means(rendered(loaded.scene, settings, what), reference, what);
+      }
+  }
+}
+
 // --- Closed forms without a medium ---
+
+TEST(PathRoulette, LetsAsManyPathsGoOnAsItSays) {
+  // In a closed room of albedo a the throughput at the third vertex is a^3, and each path that goes on from
+  // there, in proportion to it, does so again with probability a: 1 + 1 + factor a^3 / (1 - a) rays.
+  const double albedo = 0.5;
+  const LoadedScene loaded =
+      load_scene_text(room_camera_xml(32) + room_xml(light_xml(1) + diffuse_xml(albedo)));
+  for (const auto& [integrator, factor] : {std::pair{"path_mis", 1.0}, {"path_mats", 1.0}, {"path", 2.0}})
+    for (const int paths : {1, 4}) {
+      RenderSettings settings = render_settings(integrator, 128, 4, 9);
+      settings.integrator = with_bsdf_samples(settings.integrator, paths);
+      const RenderResult result = render(loaded.scene, settings);
+      const double rays = double(result.counts.bsdf_rays) / double(result.counts.samples) / paths,
+                   exact = 2 + factor * std::pow(albedo, 3) / (1 - albedo);
+      const double most_error = 0.01;  // 5 standard errors of one path.
+      EXPECT_NEAR(rays, exact, most_error) << integrator << ", " << paths << " paths";
+    }
+}
 
 TEST(PathFurnace, AGlowingRoomShinesAsTheGeometricSeries) {
   // path_ems has no place here: in a corner of two lights its samples have no bound.

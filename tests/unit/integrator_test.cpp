@@ -55,6 +55,9 @@ TEST(IntegratorText, SaysAllRules) {
             "average heuristic=average light_samples=1 sampler=uniform bsdf_samples=1");
   EXPECT_EQ(describe(integrator_from_name("every_light")), "every_light light_samples=1 sampler=all");
   EXPECT_EQ(describe({"direct", PathRules::direct(ByBsdf{5})}), "direct bsdf_samples=5");
+  EXPECT_EQ(describe(with_bsdf_samples(integrator_from_name("path"), 4)),
+            "path heuristic=power light_samples=1 sampler=tree candidates=by_scene technique=auto "
+            "bsdf_samples=4 only_where_glossy survival_factor=2");
   EXPECT_EQ(describe(integrator_from_name("normals")), "normals");
   EXPECT_EQ(describe(integrator_from_name("material")), "material");
   EXPECT_EQ(describe({"av", VisibilityRules{.length = 0.1f, .background = 1}}),
@@ -179,6 +182,38 @@ TEST(LightSamplesOfAnIntegrator, AreAsManyAsAskedForAtTheFirstVertex) {
                 HasSubstr("takes no samples of the lights"));
     EXPECT_THAT(test::error_of([&] { with_light_technique(integrator_from_name(name), "area"); }),
                 HasSubstr("takes no samples of the lights"));
+  }
+}
+
+TEST(BsdfSamplesOfAnIntegrator, AreAsManyAsAskedForAtTheFirstVertex) {
+  for (const char* name : {"path", "direct_light", "direct", "mis", "average", "path_mats", "path_mis"}) {
+    const IntegratorSettings several = with_bsdf_samples(integrator_from_name(name), 4);
+    EXPECT_EQ(several.name, name);
+    EXPECT_EQ(rules_of(several).bsdf_samples(0), 4) << name;
+    EXPECT_LE(rules_of(several).bsdf_samples(1), 1) << name;
+    EXPECT_EQ(rules_of(with_bsdf_samples(several, 1)), rules_of(integrator_from_name(name))) << name;
+  }
+  for (const int number : {0, -1, 65537})
+    EXPECT_THAT(test::error_of([&] { with_bsdf_samples(integrator_from_name("path"), number); }),
+                HasSubstr("expected from 1 to 65536"));
+  for (const char* name : {"light", "every_light", "path_ems", "whitted", "normals"})
+    EXPECT_THAT(test::error_of([&] { with_bsdf_samples(integrator_from_name(name), 2); }),
+                HasSubstr("does not look for light by samples of the BSDF"));
+  // Numbers of samples are 32-bit: those of all paths count.
+  const IntegratorSettings many = with_bsdf_samples(integrator_from_name("path_mis"), 1000);
+  EXPECT_EQ(rules_of(many).most_samples(), 1000);
+  EXPECT_EQ(rules_of(with_shadow_rays(many, 3000)).most_samples(), 3000);
+}
+
+TEST(LightBudgetOfAnIntegrator, IsWhatItWasGiven) {
+  const LightBudget budget{2, 3, 5, 4};
+  for (const char* name : {"path", "direct_light"}) {
+    const IntegratorSettings open = integrator_from_name(name), given = with_light_budget(open, budget);
+    EXPECT_TRUE(has_open_light_budget(open));
+    EXPECT_FALSE(has_open_light_budget(given));
+    EXPECT_EQ(light_budget(given), budget);
+    EXPECT_EQ(rules_of(given).light_count(1), rules_of(open).light_count(0));
+    EXPECT_FALSE(has_open_light_budget(with_candidates(open, 1)));
   }
 }
 

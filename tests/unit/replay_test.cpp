@@ -26,13 +26,13 @@ LoadedScene small_scene(const std::string& more = "") {
   return load_scene(read_nori_xml(folder.path() / "scene.xml"));
 }
 
-void expect_sums_to_pixel(LoadedScene loaded, const char* integrator) {
+void expect_sums_to_pixel(LoadedScene loaded, const IntegratorSettings& integrator) {
   for (const auto& [sampler, replicates_by] : {std::pair{SamplerKind::independent, ReplicatesBy::block},
                                                std::pair{SamplerKind::sobol, ReplicatesBy::block},
                                                std::pair{SamplerKind::sobol, ReplicatesBy::scrambling}}) {
     loaded.scene.sampler = sampler;
     RenderSettings settings;
-    settings.integrator = integrator_from_name(integrator);
+    settings.integrator = integrator;
     settings.samples_per_pixel = 2;
     settings.replicates = 2;  // so that a replicate's mean is one sample's radiance
     settings.replicates_by = replicates_by;
@@ -58,7 +58,9 @@ void expect_sums_to_pixel(LoadedScene loaded, const char* integrator) {
 
 class Replay : public testing::TestWithParam<const char*> {};
 
-TEST_P(Replay, SumsToThePixelOfTheScalarKernel) { expect_sums_to_pixel(small_scene(), GetParam()); }
+TEST_P(Replay, SumsToThePixelOfTheScalarKernel) {
+  expect_sums_to_pixel(small_scene(), integrator_from_name(GetParam()));
+}
 
 /// By cuts of the light tree, which hold every facet or not.
 TEST(ReplayOfResampledLights, SumsToThePixelOfTheScalarKernel) {
@@ -68,8 +70,8 @@ TEST(ReplayOfResampledLights, SumsToThePixelOfTheScalarKernel) {
              std::to_string(k / 20 - 7) +
              " 2'/><float name='radius' value='0.05'/><emitter type='area'/></shape>";
   for (const char* integrator : {"direct_light", "path"}) {
-    expect_sums_to_pixel(small_scene(), integrator);
-    expect_sums_to_pixel(small_scene(lamps), integrator);
+    expect_sums_to_pixel(small_scene(), integrator_from_name(integrator));
+    expect_sums_to_pixel(small_scene(lamps), integrator_from_name(integrator));
   }
 }
 
@@ -114,6 +116,11 @@ TEST_P(Replay, SaysHowTheRadianceCameAbout) {
     }
     EXPECT_EQ(trace.radiance, trace.vertices.back().radiance);
   }
+}
+
+TEST(ReplayOfSeveralBsdfSamples, SumsToThePixelOfTheScalarKernel) {
+  for (const char* integrator : {"path", "path_mis", "direct"})
+    expect_sums_to_pixel(small_scene(), with_bsdf_samples(integrator_from_name(integrator), 3));
 }
 
 TEST(ReplayOfSeveralBsdfSamples, NumbersVerticesAndBranches) {
