@@ -5,6 +5,7 @@
 #include "render/check_settings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace etendue::app {
@@ -65,32 +66,67 @@ std::optional<WeightPilot> settle_weights(const RenderOptions& options, const Sc
   return pilot;
 }
 
+int most_samples(const RenderOptions& options, const RenderSettings& settings) {
+  if (options.samples_per_pixel && *options.samples_per_pixel < least_pilot_samples)
+    throw InputError(
+        fmt::format("--spp {} with --error: it is the most there may be, and pilots alone take {}",
+                    *options.samples_per_pixel, least_pilot_samples));
+  return int(std::min<std::int64_t>(most_samples_of_pixel(settings.integrator),
+                                    options.samples_per_pixel.value_or(1 << 16)));
+}
+
+std::string range_text(const SampleAllocation& allocation, int replicates) {
+  const std::int64_t least = std::int64_t(replicates) * allocation.least(),
+                     most = std::int64_t(replicates) * allocation.most();
+  return fmt::format("{} to {} samples a pixel, {:.1f} on average", least, most,
+                     replicates * allocation.mean());
+}
+
+void say_what_pilots_ask(const Pilot& pilot, const std::string& samples, bool is_for_error) {
+  say("pilots of {:.1f} s ask for {}{}\n", pilot.seconds, samples,
+      pilot.is_dark    ? ": they have met no light"
+      : !pilot.is_most ? ""
+      : is_for_error   ? ", the most there may be: what was asked for is not reached"
+                       : ", the most there may be: the time is not used up");
+}
+
 /// Nothing where a number of samples was asked for.
 std::optional<Pilot> settle_samples(const RenderOptions& options, const Scene& scene,
                                     RenderSettings& settings) {
   const std::optional<ErrorGoal> goal = error_goal(options);
   if (!goal && !options.seconds) return std::nullopt;
-  if (options.samples_per_pixel && *options.samples_per_pixel < least_pilot_samples)
-    throw InputError(
-        fmt::format("--spp {} with --error: it is the most there may be, and pilots alone take {}",
-                    *options.samples_per_pixel, least_pilot_samples));
-  const int most = int(std::min<std::int64_t>(most_samples_of_pixel(settings.integrator),
-                                              options.samples_per_pixel.value_or(1 << 16)));
+  const int most = most_samples(options, settings);
   if (!options.is_quiet) say("pilots find out how many samples a pixel that takes ...\n");
   const Pilot pilot = goal ? samples_for_error(scene, settings, *goal, most, &stop_request)
                            : samples_for_time(scene, settings, *options.seconds, most, &stop_request);
   if (pilot.is_interrupted) return pilot;
   settings.samples_per_pixel = pilot.samples_per_pixel;
-  if (options.is_quiet) return pilot;
-  say("pilots of {:.1f} s ask for {} samples a pixel{}\n", pilot.seconds, settings.samples_per_pixel,
-      pilot.is_dark    ? ": they have met no light"
-      : !pilot.is_most ? ""
-      : goal           ? ", the most there may be: what was asked for is not reached"
-                       : ", the most there may be: the time is not used up");
+  if (!options.is_quiet)
+    say_what_pilots_ask(pilot, fmt::format("{} samples a pixel", settings.samples_per_pixel),
+                        goal.has_value());
   return pilot;
 }
 
-/// Nothing without --adaptive.
+/// Of --error with --adaptive: how many samples, and where.
+void settle_samples_of_pixels(const RenderOptions& options, const ErrorGoal& goal, const Scene& scene,
+                              RenderSettings& settings, Pilots& pilots) {
+  const int most = most_samples(options, settings);
+  if (!options.is_quiet) say("pilots find out how many samples each pixel takes ...\n");
+  const ErrorAllocation found = allocation_for_error(scene, settings, goal, most, &stop_request);
+  const double pixels = double(scene.camera.width_px) * double(scene.camera.height_px);
+  pilots.samples = found.pilot;
+  pilots.allocation =
+      AllocationPilot{found.allocation, found.replicates,
+                      int(std::lround(double(found.pilot.samples) / pixels)), found.pilot.seconds};
+  if (!found.allocation) return;
+  settings.samples_per_pixel = found.pilot.samples_per_pixel;
+  settings.replicates = found.replicates;
+  settings.allocation = found.allocation;
+  if (!options.is_quiet)
+    say_what_pilots_ask(found.pilot, range_text(*found.allocation, found.replicates), true);
+}
+
+/// Of --adaptive without --error; else nothing.
 std::optional<AllocationPilot> settle_allocation(const RenderOptions& options, const Scene& scene,
                                                  RenderSettings& settings) {
   if (!options.is_adaptive) return std::nullopt;
@@ -99,11 +135,8 @@ std::optional<AllocationPilot> settle_allocation(const RenderOptions& options, c
   settings.replicates = pilot.replicates;
   settings.allocation = pilot.allocation;
   if (!options.is_quiet)
-    say("a pilot of {} samples a pixel, of {:.1f} s, shares out {} to {} samples a pixel, {:.1f} on "
-        "average\n",
-        pilot.samples_per_pixel, pilot.seconds, pilot.replicates * pilot.allocation->least(),
-        std::int64_t(pilot.replicates) * pilot.allocation->most(),
-        pilot.replicates * pilot.allocation->mean());
+    say("a pilot of {} samples a pixel, of {:.1f} s, shares out {}\n", pilot.samples_per_pixel, pilot.seconds,
+        range_text(*pilot.allocation, pilot.replicates));
   return pilot;
 }
 
@@ -115,9 +148,15 @@ Pilots settle_by_pilots(const RenderOptions& options, const Scene& scene, Render
   pilots.weights = settle_weights(options, scene, settings);
   pilots.is_interrupted = stop_request.soon;
   if (pilots.is_interrupted) return pilots;
-  if (options.replay.empty()) pilots.samples = settle_samples(options, scene, settings);
+  const std::optional<ErrorGoal> goal = error_goal(options);
+  const bool is_each_by_itself = goal && options.is_adaptive;
+  if (is_each_by_itself)
+    settle_samples_of_pixels(options, *goal, scene, settings, pilots);
+  else if (options.replay.empty())
+    pilots.samples = settle_samples(options, scene, settings);
   if (pilots.samples) pilots.is_interrupted = pilots.samples->is_interrupted;
-  if (!pilots.is_interrupted) pilots.allocation = settle_allocation(options, scene, settings);
+  if (!pilots.is_interrupted && !is_each_by_itself)
+    pilots.allocation = settle_allocation(options, scene, settings);
   if (pilots.allocation) pilots.is_interrupted = !pilots.allocation->allocation;
   return pilots;
 }

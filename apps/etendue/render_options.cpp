@@ -154,12 +154,10 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->excludes(replicates)
       ->excludes(spp)
       ->excludes(error);
-  command
-      .add_flag(
-          "--adaptive", options.is_adaptive,
-          "Share the samples of --spp (then an average, 16 at least) or --time among the pixels by their "
-          "errors, which a pilot of an eighth of them tells")
-      ->excludes(error);
+  command.add_flag(
+      "--adaptive", options.is_adaptive,
+      "Share the samples of --spp (then an average, 16 at least) or --time among the pixels by their "
+      "errors, which a pilot of an eighth of them tells; with --error each pixel takes what it needs");
   command
       .add_option("--region", options.regions,
                   "NAME=X0,Y0,X1,Y1: say mean, error and checks of these pixels (X1 and Y1 are not of them) "
@@ -235,7 +233,6 @@ std::string replay_command(const RenderOptions& options, const InvalidSample& sa
   if (integrator.bsdf_samples) add("--bsdf-samples", *integrator.bsdf_samples);
   if (!integrator.heuristic.empty()) add("--weights", integrator.heuristic);
   if (options.samples_per_pixel) add("--spp", *options.samples_per_pixel);
-  if (options.is_adaptive) command += " --adaptive";
   if (options.replicates) add("--replicates", *options.replicates);
   if (!options.replicates_by.empty()) add("--replicates-by", options.replicates_by);
   if (options.run.seed != 0) add("--seed", options.run.seed);

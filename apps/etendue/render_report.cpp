@@ -213,6 +213,12 @@ void report_invalid(const Rendering& rendering) {
     say("the first went wrong at {}\n", object);
   RenderOptions options = rendering.options;
   if (rendering.pilots.samples) options.samples_per_pixel = rendering.settings.samples_per_pixel;
+  if (const auto& allocation = rendering.settings.allocation) {
+    // A pixel's samples are those of a render that gives all pixels as many.
+    const InvalidSample& first = result.invalid.first().front();
+    options.replicates = rendering.settings.replicates;
+    options.samples_per_pixel = *options.replicates * allocation->at(first.x, first.y);
+  }
   say("to see how the first of them came about (by the scalar kernel, which may round another way):\n  {}\n",
       replay_command(options, result.invalid.first().front()));
 }

@@ -27,6 +27,15 @@ struct PixelErrors {
 /// So many pixels that are as their bars say stand beside those that are looked at, which may be few.
 constexpr double pixels_as_told = 16;
 constexpr std::ptrdiff_t window_over_beyond = 4;
+constexpr float worth_counting = 0.25f;  ///< A smaller factor will hardly decide anything.
+constexpr std::size_t least_reach = 64;  ///< Of pixels alike in their half-widths, to each side.
+
+double quantile_of(const ErrorGoal& goal) { return normal_quantile((1 + goal.confidence) / 2); }
+
+/// 0 where neither the pixel nor an alike one near it has met light, as such pixels count as within.
+double half_width_of(const PixelInterval& interval) {
+  return interval.rule == IntervalRule::black ? 0 : double(interval.luminance_half_width);
+}
 
 }  // namespace
 
@@ -49,7 +58,7 @@ double share_within(const Film& film, std::span<const PixelInterval> intervals, 
 DistanceFromGoal distance_from(const RenderedTwice& images, const ErrorGoal& goal) {
   const double mean = 0.5 * (luminance(images.a.mean()) + luminance(images.b.mean()));
   if (!(mean > 0)) return {std::numeric_limits<double>::infinity(), 1};
-  const double quantile = normal_quantile((1 + goal.confidence) / 2);
+  const double quantile = quantile_of(goal);
   std::vector<PixelErrors> pixels;
   for (int y = 0; y < images.a.height(); ++y)
     for (int x = 0; x < images.a.width(); ++x) {
@@ -81,6 +90,58 @@ DistanceFromGoal distance_from(const RenderedTwice& images, const ErrorGoal& goa
   const double as_told = pixels_as_told / double(last - first);
   const double errors_over_bars = std::sqrt((differences / variances + as_told) / (1 + as_told));
   return {quantile * std::sqrt(told) * errors_over_bars / goal.relative, 1 / errors_over_bars};
+}
+
+PixelDistances pixel_distances_from(const RenderedTwice& images, const ErrorGoal& goal,
+                                    const std::vector<bool>& is_looked_at) {
+  const std::size_t width = std::size_t(images.a.width()), count = width * std::size_t(images.a.height());
+  PixelDistances distances{std::vector<float>(count), std::vector<float>(count)};
+  const double mean = 0.5 * (luminance(images.a.mean()) + luminance(images.b.mean()));
+  const double quantile = quantile_of(goal);
+  std::vector<std::size_t> order;
+  double sum_of_squares = 0;
+  std::int64_t counted = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const PixelInterval &of_a = images.intervals_a[i], &of_b = images.intervals_b[i];
+    if (!is_looked_at[i] || of_a.rule == IntervalRule::unknown || of_b.rule == IntervalRule::unknown)
+      continue;
+    const double a = luminance(images.a.at(int(i % width), int(i / width)).mean),
+                 b = luminance(images.b.at(int(i % width), int(i / width)).mean);
+    const double allowed = goal.relative * scale_of((a + b) / 2, mean);
+    const double width_a = half_width_of(of_a) / allowed, width_b = half_width_of(of_b) / allowed;
+    if (!(width_a > 0 && width_b > 0)) continue;
+    distances.factors[i] = float(std::sqrt((width_a * width_a + width_b * width_b) / 2));
+    distances.differences_sq[i] = float(std::pow(quantile * (a - b) / allowed, 2) / 2);
+    if (distances.factors[i] > worth_counting) {
+      sum_of_squares += std::pow(std::log(width_a / width_b), 2);
+      ++counted;
+    }
+    order.push_back(i);
+  }
+  if (order.empty()) return distances;
+  // The mean of two has half the deviation of their difference.
+  if (counted > 0) distances.spread = 0.5 * std::sqrt(sum_of_squares / double(counted));
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return distances.factors[a] > distances.factors[b]; });
+  // Of what squared differences are to squared half-widths, squared again, so that of pixels that differ in
+  // this those count that are worse; of normal errors as told it is 3 on average.
+  constexpr double of_normal = 3;
+  std::vector<double> sums{0};  // Over all before.
+  for (const std::size_t i : order)
+    sums.push_back(sums.back() + std::pow(double(distances.differences_sq[i]), 2) /
+                                     std::pow(double(distances.factors[i]), 4));
+  double sum_of_ratios = 0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const std::size_t reach = least_reach + rank / 4;
+    const std::size_t first = rank - std::min(rank, reach), last = std::min(rank + reach + 1, order.size());
+    const double number = double(last - first);
+    const double ratio = (std::sqrt((sums[last] - sums[first]) * number / of_normal) + pixels_as_told) /
+                         (number + pixels_as_told);
+    sum_of_ratios += ratio;
+    distances.factors[order[rank]] *= float(std::sqrt(ratio));
+  }
+  distances.bars_over_errors = std::sqrt(double(order.size()) / sum_of_ratios);
+  return distances;
 }
 
 }  // namespace etendue

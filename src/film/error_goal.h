@@ -5,6 +5,7 @@
 #include "film/pixel_intervals.h"
 
 #include <span>
+#include <vector>
 
 namespace etendue {
 
@@ -41,5 +42,23 @@ struct DistanceFromGoal {
 /// pixels around there (as many as four times those that may be farther off). A pixel that both have found
 /// black while alike ones around it are lit has the error of these.
 DistanceFromGoal distance_from(const RenderedTwice& images, const ErrorGoal& goal);
+
+/// As distance_from, of each pixel by itself.
+struct PixelDistances {
+  /// As DistanceFromGoal::factor, rows from the top; of one that is not looked at 0.
+  std::vector<float> factors;
+  /// Half the squared difference of the two renders over the square of what is allowed: an estimate of the
+  /// squared factor that knows nothing of bars.
+  std::vector<float> differences_sq;
+  double spread =
+      0;  ///< Standard deviation of the logarithm of a factor, as the bars of the two renders tell.
+  double bars_over_errors = 1;  ///< On average (root of mean squares).
+};
+
+/// By half-widths, so that a pixel which has missed a rare event has the error of those which met it. How far
+/// off they are the squared differences of the two renders say, on average over pixels whose half-widths,
+/// relative to the goal, are close to the pixel's. \param is_looked_at of each pixel
+PixelDistances pixel_distances_from(const RenderedTwice& images, const ErrorGoal& goal,
+                                    const std::vector<bool>& is_looked_at);
 
 }  // namespace etendue

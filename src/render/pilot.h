@@ -31,6 +31,14 @@ struct AllocationPilot {
   double seconds = 0;
 };
 
+/// What an image needs whose pixels take different numbers of samples.
+struct ErrorAllocation {
+  /// samples_per_pixel is what the allocation has on average, rounded.
+  Pilot pilot;
+  std::optional<SampleAllocation> allocation;  ///< None where the pilot was interrupted.
+  int replicates = 0;                          ///< Of the image that the allocation is for.
+};
+
 /// Samples a pixel that pilots take at the least, and images after them.
 inline constexpr int least_pilot_samples = 16;
 
@@ -41,6 +49,15 @@ inline constexpr int least_pilot_samples = 16;
 /// \param most samples a pixel, at least 16; no more are asked for
 Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, const ErrorGoal& goal, int most,
                         const StopRequest* stop = nullptr);
+
+/// As many samples of each pixel as it needs, so that a share of them reaches the goal: from pilots that give
+/// each pixel at least an eighth of that, or 16, each of two renders (pixel_distances_from). Half-widths are
+/// noisy, so all pixels take as much more as makes the share come out (film/needed_samples.h); none takes more
+/// than one at the end of the share needs. Errors are taken to fall as by samples_for_error, the power told
+/// by the pixels whose second pilot had more samples than the first.
+/// \param most samples a pixel on average, at least 16
+ErrorAllocation allocation_for_error(const Scene& scene, const RenderSettings& settings,
+                                     const ErrorGoal& goal, int most, const StopRequest* stop = nullptr);
 
 /// What can be rendered in `seconds` > 0, the pilots' own time taken off, from pilots that take a twentieth
 /// of it; at least 16.

@@ -195,6 +195,36 @@ TEST_F(CommandLine, AGoalIsReachedByAnImageThatASampleCountGivesToo) {
   EXPECT_EQ(read_file(path("a.png")), read_file(path("b.png")));
 }
 
+TEST_F(CommandLine, AGoalIsReachedByWhatEachPixelNeeds) {
+  const std::vector<std::string> command{"render",    "scene.xml",  "-o",         "a.exr",    "--error",
+                                         "0.2",       "--of",       "0.5",        "--spp",    "512",
+                                         "--stats",   "s.json",     "--adaptive", "--layers", "samples",
+                                         "--sampler", "independent"};
+  const ProgramResult first = run(command);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.err, AllOf(HasSubstr("pilots find out how many samples each pixel takes"),
+                               HasSubstr(" samples a pixel, "), HasSubstr(" on average\n")));
+  const nlohmann::json stats = json("s.json"), adaptive = stats.at("adaptive");
+  EXPECT_GT(stats.at("error").at("goal").at("reached").get<double>(), 0.3);
+  EXPECT_LT(adaptive.at("least_samples_per_pixel").get<int>(),
+            adaptive.at("most_samples_per_pixel").get<int>());
+  EXPECT_NEAR(adaptive.at("mean_samples_per_pixel").get<double>(), stats.at("spp").get<double>(), 0.5);
+  EXPECT_GE(adaptive.at("pilot_samples_per_pixel").get<int>(), 32);
+  const std::string image = read_file(path("a.exr"));
+  ASSERT_EQ(run(command).exit_code, 0);  // The same command, the same bits.
+  EXPECT_EQ(read_file(path("a.exr")), image);
+}
+
+TEST_F(CommandLine, TheMostOfAnErrorIsAnAverageWherePixelsDiffer) {
+  const ProgramResult result = run({"render", "scene.xml", "-o", "a.png", "--error", "1e-3", "--spp", "32",
+                                    "--stats", "s.json", "--adaptive", "--sampler", "independent"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("the most there may be: what was asked for is not reached"));
+  EXPECT_LE(json("s.json").at("adaptive").at("mean_samples_per_pixel").get<double>(), 32);
+  EXPECT_EQ(
+      run({"render", "scene.xml", "-o", "a.png", "--error", "0.1", "--spp", "8", "--adaptive"}).exit_code, 2);
+}
+
 TEST_F(CommandLine, StatsHaveTheirKeys) {
   ASSERT_EQ(run({"render", "scene.xml", "-o", "a.exr", "--spp", "8", "--integrator", "mis", "--sampler",
                  "sobol", "--seed", "3", "--threads", "2", "--isa", "scalar", "--stats", "s.json", "--quiet"})

@@ -3,6 +3,7 @@
 // not looked at.
 #include "film/error_goal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -92,6 +93,48 @@ TEST(DistanceFromGoal, OfBlackPixelsAmongLitOnesIsThatOfTheLitOnes) {
   }
   // True: 1.96 sqrt(300 / 16) of a mean of 1; half of the pixels have less than a tenth of their own.
   EXPECT_GT(distance(pictures[0], pictures[1], {.relative = 0.01, .share = 0.5}).factor, 100);
+}
+
+double root_mean_square(const std::vector<float>& values, bool of_few_pixels) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if ((of_few(int(i) % side_px, 0) > 0.05) == of_few_pixels) sum += std::pow(double(values[i]), 2), ++count;
+  return std::sqrt(sum / count);
+}
+
+TEST(PixelDistances, AreThoseOfTheErrorsOfEachPixel) {
+  const std::vector<bool> all(std::size_t(side_px * side_px), true);
+  for (const double wider : {1.0, 3.0}) {
+    const BarredPicture a = barred_picture(of_few, wider, 1), b = barred_picture(of_few, wider, 2);
+    const PixelDistances found =
+        pixel_distances_from({a.film, b.film, a.intervals, b.intervals}, {.relative = 0.02}, all);
+    // More than the error, as pixels whose bars say too little count more; bars are too wide by `wider`.
+    for (const bool few : {true, false}) {
+      const double over_error = root_mean_square(found.factors, few) / (1.96 * (few ? 0.1 : 0.01) / 0.02);
+      EXPECT_GT(over_error, 0.98) << wider;
+      EXPECT_LT(over_error, 1.3) << wider;
+    }
+    EXPECT_NEAR(root_mean_square(found.differences_sq, true), std::sqrt(3.0) * std::pow(1.96 * 5, 2), 30);
+    // Half-widths hold Student's quantile, and those of pixels whose own spread is small are pooled.
+    EXPECT_NEAR(found.bars_over_errors, wider, 0.15 * wider);
+    // 15 degrees of freedom, of half of the pixels more, and the mean of two.
+    EXPECT_GT(found.spread, 0.06);
+    EXPECT_LT(found.spread, 0.13);
+  }
+}
+
+TEST(PixelDistances, AreNothingWhereNobodyLooksOrNoLightIs) {
+  const BarredPicture a = barred_picture(of_few, 1, 1), b = barred_picture(of_few, 1, 2);
+  std::vector<bool> is_looked_at(std::size_t(side_px * side_px));
+  is_looked_at[7] = true;
+  const PixelDistances of_one =
+      pixel_distances_from({a.film, b.film, a.intervals, b.intervals}, {.relative = 0.02}, is_looked_at);
+  for (std::size_t i = 0; i < is_looked_at.size(); ++i) EXPECT_EQ(of_one.factors[i] > 0, i == 7);
+  const BarredPicture exact = barred_picture([](int, int) { return 0.0; }, 1, 1);
+  is_looked_at.assign(is_looked_at.size(), true);
+  const PixelDistances none = pixel_distances_from({exact.film, exact.film, exact.intervals, exact.intervals},
+                                                   {.relative = 0.02}, is_looked_at);
+  EXPECT_EQ(*std::max_element(none.factors.begin(), none.factors.end()), 0);
 }
 
 }  // namespace
