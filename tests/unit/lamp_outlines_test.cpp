@@ -1,4 +1,8 @@
 // Which pixels hold an outline of a lamp: all of which dense rays find both it and something else.
+//
+// Seen to fail when: the filter's radius, the blur of a lens, or the cuts by the clip planes are passed over;
+// sides are not clipped; the back of two-sided lamps is; triangles seen from behind keep their order of
+// vertices; vertices at one place count as several.
 #include "scene/lamp_outlines.h"
 
 #include "integrator/single_sample.h"
@@ -69,6 +73,7 @@ Counts counts_of(const Scene& scene, std::mt19937& random, int rays_across = 12)
 class RandomLamps {
  public:
   std::mt19937 random{7};
+  bool is_around_camera = false;
 
   std::string light(const char* twosided) const {
     return fmt::format(
@@ -80,9 +85,11 @@ class RandomLamps {
   double unit() { return std::uniform_real_distribution<double>(0, 1)(random); }
   double within(double most) { return most * (2 * unit() - 1); }
   /// From a hundredth of a pixel to far more than the image.
-  double size() { return std::pow(10.0, -3 + 4 * unit()); }
+  double size() { return std::pow(10.0, is_around_camera ? unit() : -3 + 4 * unit()); }
   Vec3d direction() { return normalize(Vec3d{within(1), within(1), within(1)} + Vec3d{0, 0, 1e-3}); }
-  Vec3d place(double size) { return {within(1.8), within(2) - 5 * (unit() < 0.2), within(1.8 + 0.3 * size)}; }
+  Vec3d place(double size) {
+    return {within(1.8), within(2) - (is_around_camera ? 5 : 0), within(1.8 + 0.3 * size)};
+  }
 
   std::string rectangle() {
     const double length = size();
@@ -113,6 +120,7 @@ void expect_none_missed(const Lamp& lamp, const std::string& filter, const std::
   Counts sum;
   int plain = 0;
   for (int k = 0; k < scenes; ++k) {
+    lamps.is_around_camera = k % 3 == 0;
     const LoadedScene loaded = lamp(lamps, filter, camera);
     const Counts counts = counts_of(loaded.scene, lamps.random);
     EXPECT_EQ(counts.missed, 0) << filter << ", scene " << k;
