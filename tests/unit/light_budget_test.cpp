@@ -81,10 +81,14 @@ TEST(LightBudget, IsNotMisledByTheEdgeOfALamp) {
   const LoadedScene loaded = above_a_floor(
       "<mesh type=\"obj\"><string name=\"filename\" value=\"ball.obj\"/>" + light_xml(5) + "</mesh>",
       {{"ball.obj", ball_obj(24)}});
-  const std::optional<BudgetPilot> pilot = light_budget_for(loaded.scene, settings_of(2));
-  ASSERT_TRUE(pilot);
-  EXPECT_EQ(pilot->tried.front().budget, (LightBudget{4, 8, 8, 1}));
-  EXPECT_EQ(pilot->chosen, pilot->tried.front().budget) << text_of(*pilot);
+  for (const int outline_rays : {0, 16}) {
+    RenderSettings settings = settings_of(2);
+    settings.integrator.rules = settings.integrator.path_rules()->with_outline_rays(outline_rays);
+    const std::optional<BudgetPilot> pilot = light_budget_for(loaded.scene, settings);
+    ASSERT_TRUE(pilot);
+    EXPECT_EQ(pilot->tried.front().budget, (LightBudget{4, 8, 8, 1}));
+    EXPECT_EQ(pilot->chosen, pilot->tried.front().budget) << text_of(*pilot);
+  }
 }
 
 TEST(LightBudget, IsLargeWhereLampsAreHalfHidden) {

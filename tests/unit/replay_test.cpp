@@ -176,8 +176,8 @@ TEST(ReplayOfSeveralBsdfSamples, EachHasAFreeFlightOfItsOwn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Replay,
-                         testing::Values("path", "direct_light", "light", "direct", "average", "mis",
-                                         "path_mis", "path_ems", "path_mats", "whitted", "every_light"));
+                         testing::Values("path", "light", "direct", "average", "mis", "path_mis", "path_ems",
+                                         "path_mats", "whitted", "every_light"));
 
 }  // namespace
 }  // namespace etendue
