@@ -43,8 +43,8 @@ void check_settings(const RenderSettings& settings) {
   const std::int64_t numbers = settings.samples_per_pixel * of_sample;
   if (numbers > most_numbers)
     throw InputError(
-        fmt::format("{} samples a pixel with {} light or BSDF samples each are {}, more than "
-                    "the 4294967296 that can be told apart; take fewer of one of them",
+        fmt::format("{} samples a pixel with {} light samples, BSDF samples or camera rays each are {}, "
+                    "more than the 4294967296 that can be told apart; take fewer of one of them",
                     settings.samples_per_pixel, of_sample, numbers));
 }
 
