@@ -191,6 +191,8 @@ TEST_P(LayersOf, HaveTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST_P(LayersOf, ALightAreTheImageWhereTheOthersAreBlack) {
+  if (integrator_from_name(GetParam()).light_sampler() == "tree")
+    GTEST_SKIP() << "which light is chosen depends on the powers of all";
   const std::vector<Film> layers = render(scene_of().scene, settings_of(GetParam(), {by_light})).layers;
   for (std::size_t light = 0; light < light_count; ++light) {
     SceneParts alone;
