@@ -8,6 +8,7 @@
 
 #include "test_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -99,9 +100,14 @@ TEST(LightBudget, IsLargeWhereLampsAreHalfHidden) {
           rectangle_xml({-2.2 + 0.4 * i, 0.5 + 0.4 * j, 2.5}, {0.1, 0, 0}, {0, -0.1, 0}, light_xml(1 + i)) +
           rectangle_xml({-2.2 + 0.4 * i, 0.5 + 0.4 * j, 1.2 + 0.05 * i}, {0.12, 0, 0}, {0, 0.12, 0},
                         diffuse_xml(0.5));
-  const std::optional<BudgetPilot> pilot = light_budget_for(above_a_floor(lamps, {}).scene, settings_of(2));
+  const LoadedScene loaded = above_a_floor(lamps, {});
+  const std::optional<BudgetPilot> pilot = light_budget_for(loaded.scene, settings_of(2));
   ASSERT_TRUE(pilot);
   EXPECT_EQ(pilot->chosen.light_samples, 4) << text_of(*pilot);
+  // More paths leave less noise there, but not for what they cost.
+  const std::optional<BudgetPilot> paths = light_budget_for(loaded.scene, settings_of(2, "path"));
+  ASSERT_TRUE(paths);
+  EXPECT_EQ(paths->chosen.bsdf_samples, 1) << text_of(*paths);
 }
 
 TEST(LightBudget, HasManyCandidatesWhereLampsAreMirroredInGlossySurfaces) {
@@ -145,6 +151,13 @@ TEST(LightBudget, HasSeveralPathsWhereNoiseIsOfBounces) {
   const std::optional<BudgetPilot> pilot = light_budget_for(loaded.scene, settings_of(2, "path"));
   ASSERT_TRUE(pilot);
   EXPECT_GT(pilot->chosen.bsdf_samples, 1) << text_of(*pilot);
+  // Two paths take nearly twice the time of one: bounces are most of it.
+  const auto with_paths = [&](int count) {
+    return *std::ranges::find(pilot->tried, count,
+                              [](const TriedBudget& tried) { return tried.budget.bsdf_samples; });
+  };
+  EXPECT_GT(with_paths(2).seconds, 1.7 * with_paths(1).seconds);
+  EXPECT_LT(with_paths(2).seconds, 2 * with_paths(1).seconds);
   // Where only one vertex counts there is nothing to share a camera ray.
   const std::optional<BudgetPilot> direct = light_budget_for(loaded.scene, settings_of(2));
   ASSERT_TRUE(direct);
