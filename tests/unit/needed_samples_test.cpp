@@ -48,7 +48,7 @@ TEST(NeededSamples, MakesUpForNeedsThatAreNotSharplyKnown) {
                        needed.of_pixels[std::size_t(i)] * off(engine);
     const double share = expected_share(allocation, needed);
     EXPECT_NEAR(have_enough, share * drawn, 5 * std::sqrt(share * (1 - share) * drawn)) << spread;
-    EXPECT_GE(share, 0.95) << spread;
+    EXPECT_GE(share, 0.95 - 0.5 / (image_width * image_height)) << spread;
     EXPECT_LT(share, 0.98) << spread;  // More by what the hardest pixels, which take the same, take at once.
   }
 }
