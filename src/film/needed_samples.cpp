@@ -21,7 +21,7 @@ double expected_share(const SampleAllocation& allocation, const NeededSamples& n
 
 SampleAllocation allocate_for_share(int width, const NeededSamples& needed, double share, double mean,
                                     int most) {
-  constexpr double least_multiple = -6, most_multiple = 10,
+  constexpr double least_multiple = -40, most_multiple = 10,
                    resolution = 1e-3;  // Of their logarithms to base 2.
   std::vector<float> in_order = needed.of_pixels;
   const std::size_t count = in_order.size();

@@ -59,6 +59,9 @@ TEST(NeededSamples, SharesWhatThereIsWhereNeedsAreMore) {
   EXPECT_LE(allocation.mean(), 4);
   EXPECT_GT(allocation.mean(), 2);
   EXPECT_LT(expected_share(allocation, needed), 0.99);
+  NeededSamples far_off = needed;
+  for (float& need : far_off.of_pixels) need *= 1e9f;
+  EXPECT_LE(allocate_for_share(image_width, far_off, 0.99, 4, 1 << 20).mean(), 4);
   NeededSamples dark{std::vector<float>(image_width * image_height, 0), 0};
   EXPECT_EQ(allocate_for_share(image_width, dark, 1, 100, 64).most(), 1);
   dark.of_pixels[3] = 1e9f;
