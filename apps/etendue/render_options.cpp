@@ -93,7 +93,7 @@ void add_integrator_options(CLI::App& command, IntegratorOptions& options) {
   command
       .add_option("--bsdf-samples", options.bsdf_samples,
                   "Directions from the BSDF at the first vertex, for path integrators each with a path of "
-                  "its own behind it; 1 to 65536 [path: 1, 2 or 4, as a pilot finds; others: 1, or as the "
+                  "its own behind it; 1 to 65536 [path: 1, 2, 4 or 8, as a pilot finds; others: 1, or as the "
                   "keys of the file say]")
       ->check(number);
   command.add_option("--weights", options.heuristic,

@@ -11,7 +11,8 @@ namespace etendue {
 namespace {
 
 constexpr int samples_of_budget = 8;  // A pixel, in each of the two renders.
-constexpr double better_by = 1.15;
+// That a change has to gain; more paths less, as with the pilot's few samples a pixel they gain less.
+constexpr double better_by = 1.15, better_by_paths = 1.05;
 constexpr int pixels_a_budget_square = 1024, most_budget_squares = 2048;
 
 constexpr std::int64_t swarm = 1 << 16;  // Facets from which on the light tree waits for memory.
@@ -67,11 +68,11 @@ class Trials {
 
   const LightBudget& best() const { return tried_[best_].budget; }
 
-  /// The most that one of `budgets` gains, which becomes the best if that is enough; the later ones only
-  /// where the first one gains at all. False where it was stopped.
-  bool consider(std::initializer_list<LightBudget> budgets) {
+  /// The one of `budgets` that gains most becomes the best if that is `least` or more; each after the first
+  /// is tried only where the one before gains at all. False where it was stopped.
+  bool consider(std::initializer_list<LightBudget> budgets, double least = better_by) {
     const std::size_t before = best_;
-    double most = better_by;
+    double most = least;
     for (const LightBudget& budget : budgets) {
       if (budget == tried_[before].budget) continue;
       if (!render(budget)) return false;
@@ -157,7 +158,9 @@ std::optional<BudgetPilot> light_budget_for(const Scene& scene, const RenderSett
       trials.consider({with(&LightBudget::light_samples, usual.light_samples == 1 ? several_samples : 1)}) &&
       trials.consider({with(&LightBudget::candidates, 1)}) &&
       (settings.integrator.path_rules()->length() == PathLength::one_vertex ||
-       trials.consider({with(&LightBudget::bsdf_samples, 2), with(&LightBudget::bsdf_samples, 4)}));
+       trials.consider({with(&LightBudget::bsdf_samples, 2), with(&LightBudget::bsdf_samples, 4),
+                        with(&LightBudget::bsdf_samples, 8)},
+                       better_by_paths));
   if (!is_whole) return std::nullopt;
   BudgetPilot pilot = std::move(trials).result();
   pilot.seconds = seconds_since(start);
