@@ -52,10 +52,10 @@ Pilot samples_for_error(const Scene& scene, const RenderSettings& settings, cons
 
 /// As many samples of each pixel as it needs, so that a share of them reaches the goal: from pilots that give
 /// each pixel at least an eighth of that, or 16, each of two renders (pixel_distances_from). Half-widths are
-/// noisy, so all pixels take as much more as makes the share come out (film/needed_samples.h); none takes more
-/// than one at the end of the share needs. Errors are taken to fall as by samples_for_error, the power told
-/// by the pixels whose second pilot had more samples than the first.
-/// \param most samples a pixel on average, at least 16
+/// noisy, so all pixels take as much more as makes the share come out (film/needed_samples.h); none takes
+/// more than one at the end of the share needs. Errors are taken to fall as by samples_for_error, the power
+/// told by the pixels whose second pilot had more samples than the first. \param most samples a pixel on
+/// average, at least 16
 ErrorAllocation allocation_for_error(const Scene& scene, const RenderSettings& settings,
                                      const ErrorGoal& goal, int most, const StopRequest* stop = nullptr);
 
