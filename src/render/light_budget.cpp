@@ -40,11 +40,18 @@ double seconds_of_cut(std::int64_t facets) {
 
 double squared(double x) { return x * x; }
 
-/// The mean of their squares, those beyond `most` taken for it.
-double mean_square(const std::vector<double>& values, double most) {
-  double sum = 0;
-  for (const double value : values) sum += squared(std::min(value, most));
-  return sum / double(values.size());
+struct Means {
+  double plain, of_squares;
+};
+
+/// Of values beyond `most` taken for it.
+Means means_of(const std::vector<double>& values, double most) {
+  double sum = 0, sum_of_squares = 0;
+  for (const double value : values) {
+    sum += std::min(value, most);
+    sum_of_squares += squared(std::min(value, most));
+  }
+  return {sum / double(values.size()), sum_of_squares / double(values.size())};
 }
 
 bool have_glossy(const Scene& scene) {
@@ -129,8 +136,9 @@ double TriedBudget::gain_over(const TriedBudget& other) const {
     larger.push_back(std::max(differences[i], other.differences[i]));
   const auto most = larger.begin() + std::ptrdiff_t((1 - share_of_largest) * double(larger.size()));
   std::ranges::nth_element(larger, most);
-  const double by_error = squared(other.error() / error()),
-               by_square = mean_square(other.differences, *most) / mean_square(differences, *most);
+  const Means these = means_of(differences, *most), others = means_of(other.differences, *most);
+  const double by_error = squared(others.plain / these.plain),
+               by_square = others.of_squares / these.of_squares;
   return std::min(by_error, by_square) * other.seconds / seconds;
 }
 

@@ -21,8 +21,8 @@ struct TriedBudget {
 
   double error() const;  ///< Mean of the differences.
   /// How many times as efficient as another way, 1 / (variance x seconds): by the square of the mean
-  /// difference, or by the mean of their squares, whichever says less. Of these 2 % of the pixels, where
-  /// either way has the largest, count as the least of them: one rare bright sample decides nothing.
+  /// difference, or by the mean of their squares, whichever says less. 2 % of the pixels, where either way
+  /// has the largest differences, count as the least of them: one rare bright sample decides nothing.
   double gain_over(const TriedBudget& other) const;
 };
 
