@@ -270,7 +270,8 @@ int visibly_differing_pixels(const Film& a, const Film& b) {
 }
 
 TEST(Bits, WideKernelsFollowTheScalarOneSampleBySample) {
-  // The same random numbers: what is left is rounding, which now and then turns a hit into a miss.
+  // The same random numbers: what is left is rounding, which now and then turns a hit into a miss. One of the
+  // 1024 rays that look for a lamp in one of the 4096 pixels changes the mean by 3.6e-6.
   const LoadedScene loaded = everything_scene();
   for (const Method& method : methods) {
     RenderSettings settings = render_settings(method.integrator, 64, 4, 8, method.heuristic);
@@ -281,7 +282,7 @@ TEST(Bits, WideKernelsFollowTheScalarOneSampleBySample) {
       const Film wide = render(loaded.scene, settings).film;
       EXPECT_LE(visibly_differing_pixels(wide, scalar), 20)
           << "of 4096 pixels: " << method.name << ", " << isa_name(isa);
-      EXPECT_LT(relative_difference_of_means(wide, scalar), 2e-6) << method.name << ", " << isa_name(isa);
+      EXPECT_LT(relative_difference_of_means(wide, scalar), 8e-6) << method.name << ", " << isa_name(isa);
     }
   }
 }

@@ -57,7 +57,7 @@ TEST(IntegratorText, SaysAllRules) {
   EXPECT_EQ(describe({"direct", PathRules::direct(ByBsdf{5})}), "direct bsdf_samples=5");
   EXPECT_EQ(describe(with_bsdf_samples(integrator_from_name("path"), 4)),
             "path heuristic=power light_samples=1 sampler=tree candidates=by_scene technique=auto "
-            "bsdf_samples=4 only_where_glossy survival_factor=2");
+            "bsdf_samples=4 only_where_glossy outline_rays=16 survival_factor=2");
   EXPECT_EQ(describe(integrator_from_name("normals")), "normals");
   EXPECT_EQ(describe(integrator_from_name("material")), "material");
   EXPECT_EQ(describe({"av", VisibilityRules{.length = 0.1f, .background = 1}}),
