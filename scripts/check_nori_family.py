@@ -229,7 +229,8 @@ def balanced_spp(pilots, precision):
         stderr = np.sqrt(np.sum(picture.stderr.astype(np.float64) ** 2, axis=(0, 1))) / picture.pixels[..., 0].size
         relative = np.divide(stderr, mean, out=np.zeros_like(mean), where=mean > 0).max()
         noises.append(relative * math.sqrt(picture.spp))
-        costs.append((stats["camera_rays"] + stats["shadow_rays"] + stats["bsdf_rays"]) / stats["samples"])
+        rays = sum(stats[kind] for kind in ("camera_rays", "outline_rays", "shadow_rays", "bsdf_rays"))
+        costs.append(rays / stats["samples"])
     total = sum(noise * math.sqrt(cost) for noise, cost in zip(noises, costs))
     wanted = [noise * total / math.sqrt(cost) / precision ** 2 for noise, cost in zip(noises, costs)]
     return [rounded_up(min(max(spp, LEAST_RAYS / cost), MOST_RAYS / cost)) for spp, cost in zip(wanted, costs)]

@@ -100,7 +100,6 @@ PixelDistances pixel_distances_from(const RenderedTwice& images, const ErrorGoal
   const double quantile = quantile_of(goal);
   std::vector<std::size_t> order;
   double sum_of_squares = 0;
-  std::int64_t counted = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const PixelInterval &of_a = images.intervals_a[i], &of_b = images.intervals_b[i];
     if (!is_looked_at[i] || of_a.rule == IntervalRule::unknown || of_b.rule == IntervalRule::unknown)
@@ -109,18 +108,20 @@ PixelDistances pixel_distances_from(const RenderedTwice& images, const ErrorGoal
                  b = luminance(images.b.at(int(i % width), int(i / width)).mean);
     const double allowed = goal.relative * scale_of((a + b) / 2, mean);
     const double width_a = half_width_of(of_a) / allowed, width_b = half_width_of(of_b) / allowed;
-    if (!(width_a > 0 && width_b > 0)) continue;
+    if (!(width_a > 0 || width_b > 0)) continue;
     distances.factors[i] = float(std::sqrt((width_a * width_a + width_b * width_b) / 2));
     distances.differences_sq[i] = float(std::pow(quantile * (a - b) / allowed, 2) / 2);
-    if (distances.factors[i] > worth_counting) {
+    if (distances.factors[i] > worth_counting && width_a > 0 && width_b > 0) {
       sum_of_squares += std::pow(std::log(width_a / width_b), 2);
-      ++counted;
+      ++distances.spread_pixels;
     }
     order.push_back(i);
   }
+  distances.pixels = std::int64_t(order.size());
   if (order.empty()) return distances;
   // The mean of two has half the deviation of their difference.
-  if (counted > 0) distances.spread = 0.5 * std::sqrt(sum_of_squares / double(counted));
+  if (distances.spread_pixels > 0)
+    distances.spread = 0.5 * std::sqrt(sum_of_squares / double(distances.spread_pixels));
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return distances.factors[a] > distances.factors[b]; });
   // Of what squared differences are to squared half-widths, squared again, so that of pixels that differ in

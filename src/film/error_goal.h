@@ -50,14 +50,16 @@ struct PixelDistances {
   /// Half the squared difference of the two renders over the square of what is allowed: an estimate of the
   /// squared factor that knows nothing of bars.
   std::vector<float> differences_sq;
-  double spread =
-      0;  ///< Standard deviation of the logarithm of a factor, as the bars of the two renders tell.
-  double bars_over_errors = 1;  ///< On average (root of mean squares).
+  double spread = 0;  ///< Standard deviation of the logarithm of a factor, as the bars of both renders tell,
+  std::int64_t spread_pixels = 0;  ///< of so many pixels.
+  double bars_over_errors = 1;     ///< On average (root of mean squares)
+  std::int64_t pixels = 0;         ///< of so many: those that are looked at, and not black in both renders.
 };
 
-/// By half-widths, so that a pixel which has missed a rare event has the error of those which met it. How far
-/// off they are the squared differences of the two renders say, on average over pixels whose half-widths,
-/// relative to the goal, are close to the pixel's. \param is_looked_at of each pixel
+/// By half-widths, so that a pixel which has missed a rare event has the error of those which met it; one
+/// that only one render has found lit has the error of that. How far off they are the squared differences of
+/// the two renders say, on average over pixels whose half-widths, relative to the goal, are close to the
+/// pixel's. \param is_looked_at of each pixel
 PixelDistances pixel_distances_from(const RenderedTwice& images, const ErrorGoal& goal,
                                     const std::vector<bool>& is_looked_at);
 

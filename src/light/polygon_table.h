@@ -94,7 +94,8 @@ class PolygonTable {
       box.include(record.apex + further[k - 3].from_apex);
     return box;
   }
-  /// The first corner (m) and the spread (m^2) of triangles and parallelograms, as in PolygonFan.
+  /// The first corner (m) and the spread (m^2) of triangles and parallelograms, by the longest of their sides
+  /// and diagonals.
   template <class F>
   std::pair<Vec3<F>, F> apex_and_spread(const Int<F>& row) const {
     const Int<F> at = row * Int<F>(record_words);

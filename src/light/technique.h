@@ -7,8 +7,9 @@
 
 namespace etendue {
 
-/// Of polygons (the facets of meshes, and rectangles), disks and spheres; these by solid angle, unless
-/// projected_solid_angle is asked for.
+/// Of polygons (the facets of meshes, and rectangles), disks and spheres, these by solid angle unless
+/// projected_solid_angle is asked for; and of light from everywhere, whose directions are uniform by area and
+/// solid_angle, else go by the cosine.
 ///   area: a point uniform on the surface, as course handouts have it.
 ///   solid_angle: a direction uniform among those in which the receiver sees the light.
 ///   projected_solid_angle: a direction with density in proportion to the cosine at the receiver; disks, and

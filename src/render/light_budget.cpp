@@ -136,6 +136,7 @@ double TriedBudget::gain_over(const TriedBudget& other) const {
     larger.push_back(std::max(differences[i], other.differences[i]));
   const auto most = larger.begin() + std::ptrdiff_t((1 - share_of_largest) * double(larger.size()));
   std::ranges::nth_element(larger, most);
+  if (!(*most > 0)) return 1;  // Hardly any pixel has noise: nothing to choose by.
   const Means these = means_of(differences, *most), others = means_of(other.differences, *most);
   const double by_error = squared(others.plain / these.plain),
                by_square = others.of_squares / these.of_squares;

@@ -34,12 +34,12 @@ struct BudgetPilot {
   double gain() const;  ///< Of what was chosen, over the usual one.
 };
 
-/// Renders 1 pixel in 256 twice with the usual budget of settled(), 8 samples a pixel, and with others, each
-/// of which changes one number of the best so far: 16 candidates at surfaces that are not diffuse; 4 light
-/// samples or 1; 1 candidate elsewhere; for paths that go on, 2, 4 and 8 from the first vertex. A change is
-/// kept that gains 15 %, more paths from 5 % on. None where there is no choice: where the integrator does not
-/// leave its budget to the scene, or the image has fewer than 65,536 pixels. It depends on the scene and the
-/// integrator alone, not on the number of samples, threads or the seed.
+/// Renders 1 pixel in 256, 8192 at the most, twice with the usual budget of settled(), 8 samples a pixel, and
+/// with others, each of which changes one number of the best so far: 16 candidates at surfaces that are not
+/// diffuse; 4 light samples or 1; 1 candidate elsewhere; for paths that go on, 2, 4 and 8 from the first
+/// vertex. A change is kept that gains 15 %, more paths from 5 % on. None where there is no choice: where the
+/// integrator does not leave its budget to the scene, or the image has fewer than 65,536 pixels. It depends
+/// on the scene and the integrator alone, not on the number of samples, threads or the seed.
 std::optional<BudgetPilot> light_budget_for(const Scene& scene, const RenderSettings& settings,
                                             const StopRequest* stop = nullptr);
 

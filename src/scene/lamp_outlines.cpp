@@ -71,7 +71,7 @@ class MarkedFilm {
 
   /// Marks where a segment in film space passes, or one that is off by `deviation` (m) at most.
   void mark(Vec3d a, Vec3d b, double deviation = 0) {
-    if (!clip(a, b)) return;
+    if (is_exhausted() || !clip(a, b)) return;
     const double least_depth = std::min(a.z, b.z), depth_off = deviation * length(to_depth_);
     const double clear = std::max(least_depth - depth_off, near_);
     const double blur =
@@ -121,7 +121,7 @@ class MarkedFilm {
   void mark_on_film(const Vec3d& a, const Vec3d& b, double reach_x, double reach_y) {
     const auto [top, bottom] = std::minmax(a.y, b.y);
     const int first = first_pixel(top - reach_y), end = end_pixel(bottom + reach_y, height_);
-    for (int y = first; y < end; ++y) {
+    for (int y = first; y < end && !is_exhausted(); ++y) {
       double from = a.x, to = b.x;
       if (a.y != b.y) {
         const double per_y = (b.x - a.x) / (b.y - a.y);
@@ -141,13 +141,14 @@ class MarkedFilm {
     return int(std::clamp(std::floor(to - 0.5) + 1, 0.0, double(count)));
   }
 
+  /// Very many outlines, or much blurred ones, must not take longer than the image.
+  bool is_exhausted() const {
+    return marks_made_ > std::max(std::int64_t{16} * width_ * height_, std::int64_t{1} << 24);
+  }
+
   void mark_row(int y, int first, int end) {
-    const std::size_t pixels = std::size_t(width_) * std::size_t(height_);
-    // Very many outlines, or much blurred ones, must not take longer than the image.
-    const auto most_marks = std::int64_t(std::max<std::size_t>(16 * pixels, 1 << 24));
     marks_made_ += end - first;
-    if (marks_made_ > most_marks) return;
-    if (marks_.empty()) marks_.resize(pixels);
+    if (marks_.empty()) marks_.resize(std::size_t(width_) * std::size_t(height_));
     std::memset(&marks_[std::size_t(y) * std::size_t(width_) + std::size_t(first)], 1,
                 std::size_t(end - first));
   }

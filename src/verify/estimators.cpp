@@ -97,7 +97,9 @@ std::optional<std::string> reason_against(const Scene& scene, std::string_view n
   if (!integrator.path_rules()->light_samples() && lights.dirac_count() > 0)
     return "no ray meets the scene's point, spot or directional lights";
   const bool has_surfaces = lights.dirac_count() + lights.infinite_count() < lights.count();
-  if (has_option(name, "--technique") && !has_surfaces)
+  // Light from everywhere has no surface, but its directions go by the cosine where they can.
+  if (has_option(name, "--technique") && !has_surfaces &&
+      !(has_option(name, "projected") && lights.infinite_count() > 0))
     return "the scene's lights have no surface to sample in another way";
   if (has_option(name, "ltc") && !scene.materials.lobes().have_any()) return "no surface is glossy";
   const bool takes_all = integrator.light_sampler() == "all";

@@ -537,7 +537,7 @@ TEST_F(CommandLine, ASignalSoonAfterOneThatWasPassedOverIsObeyed) {
   write_file(path("scene.xml"), scene_xml(256, 256));
   // A pass of some seconds, that the first signal waits for.
   std::vector<std::string> command = long_first_pass;
-  command[5] = "300";
+  command[5] = "150";
   for (int attempt = 0; attempt < 10; ++attempt) {
     Program program(command, folder_.path());
     program.wait_until([&] { return program.err_so_far().find("samples a pixel in") != std::string::npos; });

@@ -77,22 +77,26 @@ TEST(DistanceFromGoal, KnowsNoLightFromNoError) {
 }
 
 /// One replicate in 300 meets a light: most pixels are black in both renders, and as noisy as the others.
-TEST(DistanceFromGoal, OfBlackPixelsAmongLitOnesIsThatOfTheLitOnes) {
-  std::mt19937_64 numbers(5);
-  std::bernoulli_distribution hit(1.0 / 300);
-  BarredPicture pictures[2];
-  for (BarredPicture& one : pictures) {
-    ReplicateLuminances luminances(side_px, side_px, replicate_count);
-    for (int i = 0; i < side_px * side_px; ++i) {
-      std::vector<Color<double>> means(replicate_count);
-      for (Color<double>& mean : means) mean.r = mean.g = mean.b = hit(numbers) ? 300 : 0;
-      one.film.at(i % side_px, i / side_px) = combine_replicates(means, 0);
-      luminances.add(i % side_px, i / side_px, 0, means);
-    }
-    one.intervals = pixel_intervals(one.film, luminances, 0.95);
+/// One replicate in `once_in` is lit, and as bright as that.
+BarredPicture rarely_lit_picture(int once_in, std::uint64_t seed) {
+  std::mt19937_64 numbers(seed);
+  std::bernoulli_distribution hit(1.0 / once_in);
+  BarredPicture picture;
+  ReplicateLuminances luminances(side_px, side_px, replicate_count);
+  for (int i = 0; i < side_px * side_px; ++i) {
+    std::vector<Color<double>> means(replicate_count);
+    for (Color<double>& mean : means) mean.r = mean.g = mean.b = hit(numbers) ? once_in : 0;
+    picture.film.at(i % side_px, i / side_px) = combine_replicates(means, 0);
+    luminances.add(i % side_px, i / side_px, 0, means);
   }
+  picture.intervals = pixel_intervals(picture.film, luminances, 0.95);
+  return picture;
+}
+
+TEST(DistanceFromGoal, OfBlackPixelsAmongLitOnesIsThatOfTheLitOnes) {
+  const BarredPicture a = rarely_lit_picture(300, 5), b = rarely_lit_picture(300, 6);
   // True: 1.96 sqrt(300 / 16) of a mean of 1; half of the pixels have less than a tenth of their own.
-  EXPECT_GT(distance(pictures[0], pictures[1], {.relative = 0.01, .share = 0.5}).factor, 100);
+  EXPECT_GT(distance(a, b, {.relative = 0.01, .share = 0.5}).factor, 100);
 }
 
 double root_mean_square(const std::vector<float>& values, bool of_few_pixels) {
@@ -121,6 +125,21 @@ TEST(PixelDistances, AreThoseOfTheErrorsOfEachPixel) {
     EXPECT_GT(found.spread, 0.06);
     EXPECT_LT(found.spread, 0.13);
   }
+}
+
+TEST(PixelDistances, AreThoseOfTheLitPictureWhereTheOtherIsBlack) {
+  const BarredPicture a = rarely_lit_picture(800, 5), b = rarely_lit_picture(800, 6);
+  const std::vector<bool> all(std::size_t(side_px * side_px), true);
+  const PixelDistances found =
+      pixel_distances_from({a.film, b.film, a.intervals, b.intervals}, {.relative = 0.02}, all);
+  int of_one = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_black_a = a.intervals[i].rule == IntervalRule::black,
+               is_black_b = b.intervals[i].rule == IntervalRule::black;
+    of_one += is_black_a != is_black_b;
+    EXPECT_EQ(found.factors[i] > 0, !is_black_a || !is_black_b) << i;
+  }
+  EXPECT_GT(of_one, 20);
 }
 
 TEST(PixelDistances, AreNothingWhereNobodyLooksOrNoLightIs) {
