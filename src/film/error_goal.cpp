@@ -92,14 +92,23 @@ DistanceFromGoal distance_from(const RenderedTwice& images, const ErrorGoal& goa
   return {quantile * std::sqrt(told) * errors_over_bars / goal.relative, 1 / errors_over_bars};
 }
 
+double spread_of(const std::vector<float>& log_ratios_sq) {
+  double sum = 0;
+  std::int64_t count = 0;
+  for (const float ratio_sq : log_ratios_sq)
+    if (ratio_sq >= 0) sum += double(ratio_sq), ++count;
+  // The mean of two has half the deviation of their difference.
+  return count > 0 ? 0.5 * std::sqrt(sum / double(count)) : 0;
+}
+
 PixelDistances pixel_distances_from(const RenderedTwice& images, const ErrorGoal& goal,
                                     const std::vector<bool>& is_looked_at) {
   const std::size_t width = std::size_t(images.a.width()), count = width * std::size_t(images.a.height());
-  PixelDistances distances{std::vector<float>(count), std::vector<float>(count)};
+  PixelDistances distances{std::vector<float>(count), std::vector<float>(count),
+                           std::vector<float>(count, -1.0f)};
   const double mean = 0.5 * (luminance(images.a.mean()) + luminance(images.b.mean()));
   const double quantile = quantile_of(goal);
   std::vector<std::size_t> order;
-  double sum_of_squares = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const PixelInterval &of_a = images.intervals_a[i], &of_b = images.intervals_b[i];
     if (!is_looked_at[i] || of_a.rule == IntervalRule::unknown || of_b.rule == IntervalRule::unknown)
@@ -111,17 +120,11 @@ PixelDistances pixel_distances_from(const RenderedTwice& images, const ErrorGoal
     if (!(width_a > 0 || width_b > 0)) continue;
     distances.factors[i] = float(std::sqrt((width_a * width_a + width_b * width_b) / 2));
     distances.differences_sq[i] = float(std::pow(quantile * (a - b) / allowed, 2) / 2);
-    if (distances.factors[i] > worth_counting && width_a > 0 && width_b > 0) {
-      sum_of_squares += std::pow(std::log(width_a / width_b), 2);
-      ++distances.spread_pixels;
-    }
+    if (distances.factors[i] > worth_counting && width_a > 0 && width_b > 0)
+      distances.log_ratios_sq[i] = float(std::pow(std::log(width_a / width_b), 2));
     order.push_back(i);
   }
-  distances.pixels = std::int64_t(order.size());
   if (order.empty()) return distances;
-  // The mean of two has half the deviation of their difference.
-  if (distances.spread_pixels > 0)
-    distances.spread = 0.5 * std::sqrt(sum_of_squares / double(distances.spread_pixels));
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return distances.factors[a] > distances.factors[b]; });
   // Of what squared differences are to squared half-widths, squared again, so that of pixels that differ in

@@ -50,11 +50,14 @@ struct PixelDistances {
   /// Half the squared difference of the two renders over the square of what is allowed: an estimate of the
   /// squared factor that knows nothing of bars.
   std::vector<float> differences_sq;
-  double spread = 0;  ///< Standard deviation of the logarithm of a factor, as the bars of both renders tell,
-  std::int64_t spread_pixels = 0;  ///< of so many pixels.
-  double bars_over_errors = 1;     ///< On average (root of mean squares)
-  std::int64_t pixels = 0;         ///< of so many: those that are looked at, and not black in both renders.
+  /// Of the bars of the two renders, the squared logarithm of their ratio; below 0 where that tells nothing.
+  std::vector<float> log_ratios_sq;
+  double bars_over_errors = 1;  ///< On average (root of mean squares).
 };
+
+/// Standard deviation of the logarithm of a factor, as the bars of the two renders tell; 0 where they tell
+/// nothing. \param log_ratios_sq PixelDistances::log_ratios_sq
+double spread_of(const std::vector<float>& log_ratios_sq);
 
 /// By half-widths, so that a pixel which has missed a rare event has the error of those which met it; one
 /// that only one render has found lit has the error of that. How far off they are the squared differences of

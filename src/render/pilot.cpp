@@ -78,7 +78,8 @@ auto distance_of_pilots(const Scene& scene, const RenderSettings& settings, std:
 
 /// What is known of each pixel, by the pilot that gave it most samples.
 struct KnownPixels {
-  explicit KnownPixels(std::size_t count) : samples(count), factors(count), differences_sq(count) {}
+  explicit KnownPixels(std::size_t count)
+      : samples(count), factors(count), differences_sq(count), log_ratios_sq(count, -1.0f) {}
 
   std::vector<bool> with_less_than(const std::vector<float>& other_samples) const {
     std::vector<bool> have_less(samples.size());
@@ -103,32 +104,21 @@ struct KnownPixels {
       samples[i] = samples_now[i];
       factors[i] = distances.factors[i];
       differences_sq[i] = distances.differences_sq[i];
+      log_ratios_sq[i] = distances.log_ratios_sq[i];
     }
     if (before > 0 && after > 0) power = expected_power(0.5 * std::log(after / before) * count / growth);
-    spread_sq_sum += std::pow(distances.spread, 2) * double(distances.spread_pixels);
-    spread_pixels += distances.spread_pixels;
-    errors_over_bars_sq_sum += std::pow(distances.bars_over_errors, -2) * double(distances.pixels);
-    pixels += distances.pixels;
-  }
-
-  /// Of the logarithm of a factor, over all pilots: the last ones look at few pixels.
-  double spread() const { return spread_pixels > 0 ? std::sqrt(spread_sq_sum / double(spread_pixels)) : 0; }
-  double bars_over_errors() const {
-    return pixels > 0 ? std::sqrt(double(pixels) / errors_over_bars_sq_sum) : 1;
   }
 
   NeededSamples needed(int replicates) const {
-    NeededSamples needed{std::vector<float>(samples.size()), spread() / -power};
+    NeededSamples needed{std::vector<float>(samples.size()), spread_of(log_ratios_sq) / -power};
     for (std::size_t i = 0; i < samples.size(); ++i)
       needed.of_pixels[i] = samples[i] * std::pow(factors[i], float(-1 / power)) / float(replicates);
     return needed;
   }
   double most_samples() const { return *std::max_element(samples.begin(), samples.end()); }
 
-  std::vector<float> samples, factors, differences_sq;
+  std::vector<float> samples, factors, differences_sq, log_ratios_sq;
   double power = power_of_independent;
-  double spread_sq_sum = 0, errors_over_bars_sq_sum = 0;
-  std::int64_t spread_pixels = 0, pixels = 0;
 };
 
 std::vector<float> samples_of_pixels(const SampleAllocation& allocation, int replicates) {
@@ -201,7 +191,7 @@ ErrorAllocation allocation_for_error(const Scene& scene, const RenderSettings& s
     if (!distances) return result;
     if (pilot.is_dark) return same_for_all(scene, settings, goal, most, pilot, stop);
     known.take(*distances, is_looked_at, samples);
-    pilot.bars_over_errors = known.bars_over_errors();
+    pilot.bars_over_errors = distances->bars_over_errors;
 
     const auto allocate_for = [&](int replicates) {
       result.replicates = replicates;

@@ -122,8 +122,8 @@ TEST(PixelDistances, AreThoseOfTheErrorsOfEachPixel) {
     // Half-widths hold Student's quantile, and those of pixels whose own spread is small are pooled.
     EXPECT_NEAR(found.bars_over_errors, wider, 0.15 * wider);
     // 15 degrees of freedom, of half of the pixels more, and the mean of two.
-    EXPECT_GT(found.spread, 0.06);
-    EXPECT_LT(found.spread, 0.13);
+    EXPECT_GT(spread_of(found.log_ratios_sq), 0.06);
+    EXPECT_LT(spread_of(found.log_ratios_sq), 0.13);
   }
 }
 
