@@ -19,7 +19,7 @@ BUGS = [("none", AREA), ("none", PLATES), ("none", BALL), ("no_light_pmf", AREA)
         ("number_reused", AREA), ("light_never_chosen", AREA), ("tree_blind", AREA), ("points_not_uniform", AREA),
         ("area_of_one_triangle", AREA), ("cosine_twice", AREA), ("cosine_missing", AREA), ("geometric_cosine", BALL),
         ("distance_not_squared", AREA), ("factor_2", AREA), ("one_over_pi_missing", AREA), ("no_shadow_ray", AREA),
-        ("shadow_ray_too_short", BALL), ("shadow_ray_too_long", AREA), ("self_shadow", AREA),
+        ("shadow_ray_too_short", BALL), ("shadow_ray_too_long", AREA), ("self_shadow", BALL),
         ("samples_not_averaged", AREA), ("technique_density", AREA), ("mis_density_of_one_side", PLATES),
         ("mis_without_pmf", PLATES), ("mis_light_side_in_full", PLATES), ("mis_met_side_in_full", PLATES),
         ("mis_heuristics_mixed", PLATES), ("bsdf_cosine_missing", AREA), ("bsdf_pdf_of_one_lobe", PLATES),
